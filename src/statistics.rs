@@ -161,7 +161,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mean_is_off_by_its_share_of_the_known_value() {
+    fn deviation_is_relative_to_the_known_value() {
         assert_eq!(Mean { value: 4.2, bar: 0.4 }.off(4.0).to_string(), "0.05 ± 0.10");
     }
 
@@ -191,7 +191,7 @@ mod tests {
 
     /// Critical distances of the tables (Stephens 1974): 1.358 and 1.628 for 5 and 1 of 100; and evenly spaced values.
     #[test]
-    fn the_probability_of_a_distance_is_that_of_the_tables() {
+    fn kolmogorov_probabilities_match_published_tables() {
         for (scaled, p) in [(1.358, 0.05), (1.628, 0.01)] {
             let count = 10_000;
             let shift = scaled / (100.0 + 0.12 + 0.0011);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_values_that_were_there() {
+    fn quantiles_are_elements_of_the_data() {
         assert_eq!(
             [0.0, 0.25, 1.0].map(|share| quantile(&[1.0, 2.0, 3.0, 4.0, 5.0], share)),
             [1.0, 2.0, 5.0].map(Some)
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn least_squares_finds_what_is_there_and_nothing_negative() {
+    fn least_squares_solution_is_non_negative() {
         let rows: Vec<([f64; 2], f64)> =
             [[1.0, 2.0], [2.0, 1.0], [3.0, 5.0]].map(|row| (row, 2.0 * row[0] + 0.5 * row[1])).to_vec();
         let [a, b] = non_negative(&rows);

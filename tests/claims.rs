@@ -17,7 +17,7 @@ fn judged(claim: &Claim) -> Option<(&str, &Claim)> {
 
 /// Tables and columns named by claims exist in the committed report.
 #[test]
-fn every_claim_is_judged_by_the_committed_report() {
+fn committed_report_decides_every_claim() {
     let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
     assert!(all.len() >= 90, "{} claims", all.len());
     let items: BTreeSet<&str> = all.iter().filter_map(judged).map(|(item, _)| item).collect();
@@ -66,7 +66,7 @@ fn then(commit: &str, file: &str) -> Option<Vec<Claim>> {
 
 /// A changed claim keeps its earlier limit: its text in the file grows, and nothing is edited away.
 #[test]
-fn a_changed_limit_keeps_the_one_before() {
+fn changed_limits_keep_their_history() {
     for claim in claims::all().unwrap() {
         let mut days: Vec<&str> = claim.before.iter().map(|limit| limit.since.as_str()).collect();
         days.insert(0, &claim.limit.since);

@@ -17,7 +17,7 @@ fn json(arguments: &[&str]) -> Value {
 
 /// The printed column has the counts of the paper, the counted one those of the program, and both clocks are NOP·(n + D).
 #[test]
-fn the_table_holds_the_printed_counts_and_the_paper_clock() {
+fn table_has_the_printed_counts_and_clocks() {
     let table = json(&["table", "--particles", "2000", "--occupancy", "0.25", "--json"]);
     let rows = |name: &str| table[name].as_array().unwrap();
     let printed = |row: &Value| row["printed_in_1993"].as_u64();
@@ -39,7 +39,7 @@ fn the_table_holds_the_printed_counts_and_the_paper_clock() {
 
 /// A listing has as many instructions as the table counts.
 #[test]
-fn listings_and_table_count_the_same() {
+fn listings_and_table_agree() {
     let table = json(&["table", "--json"]);
     let parts = ["predictor", "box", "index", "halo", "lattice", "forces", "corrector"];
     for text in ["printed", "ours"] {
@@ -55,7 +55,7 @@ fn listings_and_table_count_the_same() {
 
 /// BP93's own program is benched by its name, and a scene that runs it lists its programs by equation.
 #[test]
-fn the_printed_text_is_benched_and_named_by_its_equations() {
+fn printed_program_is_benched_and_listed_by_equation() {
     for (arguments, text) in [(&["--text", "printed"][..], "printed"), (&[], "ours")] {
         let bench = ["bench", "lattice", "--particles", "100", "--steps", "5", "--repeats", "1", "--json"];
         let bench = json(&[&bench, arguments, &["--execution", "chained"]].concat());
@@ -75,7 +75,7 @@ fn the_printed_text_is_benched_and_named_by_its_equations() {
 
 /// Lattice programs are counted for every preset with contacts, and a note is shown if the run itself uses another search.
 #[test]
-fn every_preset_with_contacts_on_a_lattice_is_counted() {
+fn lattice_programs_of_every_preset_are_counted() {
     let mut said_so = 0;
     for preset in
         ["bench", "dense-gas", "dense-gas-printed", "pipe-small", "pipe-small-printed", "shaken-box"]
@@ -118,7 +118,7 @@ fn simpler_scenes_cost_less() {
 
 /// Unknown names exit with 2 and list the known ones; impossible values are named.
 #[test]
-fn bad_usage_exits_with_2_and_helps() {
+fn bad_usage_exits_with_2_and_help() {
     for (arguments, words) in [
         (&["table", "--machine", "cray-9"][..], &["cray-9", "paper", "cray-y-mp-el"][..]),
         (&["listing", "foces"], &["foces", "predictor", "forces", "corrector"]),
@@ -149,7 +149,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 
 /// Results are written to the requested folder, and two runs write the same bytes.
 #[test]
-fn reproduce_writes_the_same_twice() {
+fn reproduce_is_deterministic() {
     let folder = tempfile::tempdir().unwrap();
     let [first, second] = ["a", "b"].map(|name| {
         let out = folder.path().join(name);
@@ -171,7 +171,7 @@ fn reproduce_writes_the_same_twice() {
 
 /// Making one item again leaves the others unchanged, on disk and on the pages.
 #[test]
-fn single_items_keep_the_rest() {
+fn single_items_leave_others_unchanged() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let make = |item| assert!(stripmine(&["reproduce", "--only", item, "--out", out]).status.success());
@@ -214,7 +214,7 @@ fn an_unwritable_folder_exits_with_5() {
 
 /// A misspelt word, or one that belongs elsewhere, is answered with the intended one.
 #[test]
-fn mistaken_words_are_answered_with_what_was_meant() {
+fn misspelt_words_get_the_intended_word() {
     for (arguments, code, meant) in [
         (&["rnu", "two-discs"][..], 2, "'run'"),
         (&["polt", "x"], 2, "'plot'"),
@@ -243,7 +243,7 @@ fn mistaken_words_are_answered_with_what_was_meant() {
 
 /// A bench on several numbers of threads gives the same bits and reports the serial part of every phase.
 #[test]
-fn a_bench_on_several_numbers_of_threads_tells_what_does_not_gain() {
+fn bench_on_several_thread_counts_reports_serial_parts() {
     let bench = ["bench", "lattice", "--particles", "6000", "--steps", "20", "--repeats", "2", "--quiet"];
     let run = |more: &[&str]| {
         let mut command = Command::cargo_bin("stripmine").unwrap();

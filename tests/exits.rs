@@ -114,7 +114,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
 ];
 
 #[test]
-fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
+fn verbs_fail_with_exit_code_message_and_data() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     prepare(folder);
@@ -141,7 +141,7 @@ fn every_verb_refuses_with_its_exit_code_in_words_and_as_data() {
 
 /// `RAYON_NUM_THREADS` has the same bounds as `--threads`, which takes precedence.
 #[test]
-fn threads_of_the_environment_are_bounded() {
+fn rayon_threads_are_bounded_like_the_option() {
     let folder = tempfile::tempdir().unwrap();
     let run = |threads: &str, more: &[&str]| {
         let mut command = Command::cargo_bin("stripmine").unwrap();
@@ -167,7 +167,7 @@ fn threads_of_the_environment_are_bounded() {
 
 /// A broken simulation is reported as data, with kind, moment, particles and values, whichever verb ran it.
 #[test]
-fn failures_of_the_physics_are_data() {
+fn physics_failures_are_reported_as_data() {
     let folder = tempfile::tempdir().unwrap();
     let run = ["run", "two-discs", "--set", "law.stiffness=1e-3", "--json"];
     let data: Value = serde_json::from_slice(&stripmine(folder.path(), &run).stdout).unwrap();
@@ -183,7 +183,7 @@ fn failures_of_the_physics_are_data() {
 
 /// All mistakes of a scene are reported, each with its location; the first of them is the error.
 #[test]
-fn mistakes_of_a_scene_have_their_places_as_data() {
+fn scene_mistakes_have_locations_as_data() {
     let folder = tempfile::tempdir().unwrap();
     let bad = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/many-mistakes-at-once.toml");
     for verb in [&["scene", "check"][..], &["run"]] {
@@ -246,7 +246,7 @@ fn full_and_closed_outputs_end_in_exit_codes() {
 /// A file that reaches the size limit is an input/output failure, not a death by a signal.
 #[cfg(unix)]
 #[test]
-fn the_limit_of_file_sizes_ends_in_an_exit_code() {
+fn file_size_limit_ends_in_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let program = assert_cmd::cargo::cargo_bin("stripmine");
     for arguments in
@@ -301,7 +301,7 @@ fn forged_checkpoints_end_with_6() {
 /// Variables of launchers do not affect verbs that start no simulation; a run among several processes is refused if the processes could not
 /// communicate.
 #[test]
-fn launchers_are_asked_for_what_starts_something() {
+fn launcher_variables_affect_simulations_only() {
     const LAUNCHERS: [[(&str, &str); 2]; 3] = [
         [("PMI_SIZE", "8"), ("PMI_RANK", "0")],
         [("OMPI_COMM_WORLD_SIZE", "8"), ("OMPI_COMM_WORLD_RANK", "0")],
@@ -348,7 +348,7 @@ fn launchers_are_asked_for_what_starts_something() {
 /// An impossible number of threads in the environment is refused and the variable is named; an empty value, or `--threads` on the command line,
 /// makes it irrelevant.
 #[test]
-fn threads_of_the_environment_have_a_bound() {
+fn bad_rayon_threads_are_refused_unless_overridden() {
     let folder = tempfile::tempdir().unwrap();
     for (given, more, code) in [
         ("", &[][..], 0),
@@ -374,7 +374,7 @@ fn threads_of_the_environment_have_a_bound() {
 
 /// Runs with several seeds that fail leave no summary of the runs they overwrite.
 #[test]
-fn a_summary_of_seeds_goes_with_its_runs() {
+fn overwritten_seed_runs_leave_no_summary() {
     let folder = tempfile::tempdir().unwrap();
     let begin = ["run", "dense-gas", "--seeds", "2", "--out", "all", "--quiet", "--set", "run.steps=400"];
     let summary = folder.path().join("all/seeds.json");

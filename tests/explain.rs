@@ -29,7 +29,7 @@ fn plan(output: &Output) -> Value {
 const GAS: [&str; 5] = ["hard-disks", "--set", "particles.count=100", "--seconds", "1"];
 
 #[test]
-fn a_plan_is_written_carried_out_and_reaches_its_error() {
+fn plan_is_written_run_and_reaches_its_error() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let asked = [&GAS[..], &["--error", "2%", "--write", "plan.toml", "--analyze", "--json"]].concat();
@@ -53,7 +53,7 @@ fn a_plan_is_written_carried_out_and_reaches_its_error() {
 }
 
 #[test]
-fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
+fn measurements_are_cached_per_host_and_removable() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     ends_with(&explain(folder, &[&GAS[..3], &["--estimate"]].concat()), 4, &["no cached measurements"]);
@@ -81,7 +81,7 @@ fn what_was_measured_is_kept_for_this_host_and_may_be_forgotten() {
 /// An existing file is refused before any trial, whatever its type. With --overwrite a link is replaced, not followed; pipes and folders stay.
 #[cfg(unix)]
 #[test]
-fn a_plan_is_not_written_over_what_is_there() {
+fn plans_overwrite_no_existing_files() {
     use std::os::unix::fs::{FileTypeExt, symlink};
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
@@ -127,7 +127,7 @@ fn a_plan_is_not_written_over_what_is_there() {
 /// instead of a cached file.
 #[cfg(unix)]
 #[test]
-fn an_unusable_cache_costs_no_plan() {
+fn unusable_cache_does_not_prevent_a_plan() {
     use std::os::unix::fs::symlink;
     let begin = |folder: &Path| {
         let mut command = Command::cargo_bin("stripmine").unwrap();
@@ -177,7 +177,7 @@ fn a_relative_cache_folder_is_ignored() {
 
 /// Quantities without scatter are cached too, including infinitely many degrees of freedom.
 #[test]
-fn what_does_not_vary_is_found_again() {
+fn constant_quantities_are_cached() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     // The temperature of elastic hard discs is constant; the energy of two bodies is conserved.
@@ -196,7 +196,7 @@ fn what_does_not_vary_is_found_again() {
 
 /// Files of the user in the cache stay.
 #[test]
-fn only_what_was_kept_is_forgotten() {
+fn forgetting_removes_cached_measurements_only() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     plan(&explain(folder, &[&GAS[..], &["--error", "5%", "--json"]].concat()));
@@ -215,7 +215,7 @@ fn only_what_was_kept_is_forgotten() {
 
 /// A scene is read once: trials, plan and plan file use the scene as it was at the start.
 #[test]
-fn a_scene_that_changes_meanwhile_is_that_of_the_beginning() {
+fn plans_use_the_scene_as_first_read() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let scene = folder.join("scene.toml");
@@ -239,7 +239,7 @@ fn a_scene_that_changes_meanwhile_is_that_of_the_beginning() {
 
 /// A plan that takes more than a minute is printed but not carried out if no terminal can confirm it.
 #[test]
-fn a_long_plan_is_carried_out_only_if_the_user_says_so() {
+fn long_plans_run_only_when_confirmed() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let long = explain(folder, &[&GAS[..], &["--error", "0.02%", "--analyze"]].concat());
@@ -256,7 +256,7 @@ fn a_long_plan_is_carried_out_only_if_the_user_says_so() {
 /// that the
 /// scene sets stay as they are, and a scene without similar measurements runs as usual.
 #[test]
-fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
+fn runs_are_tuned_by_measurements_of_similar_scenes() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let gas = |count: &'static str| ["dense-gas", "--set", count, "--set", "particles.packing_fraction=0.3"];
@@ -292,7 +292,7 @@ fn a_run_may_be_tuned_by_what_was_measured_of_a_scene_that_is_alike() {
 }
 
 #[test]
-fn what_should_keep_its_value_gets_the_step_that_keeps_it() {
+fn conserved_quantities_determine_the_step() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let asked = ["kepler", "--of", "energy_error", "--error", "1e-6", "--seconds", "2", "--json"];
@@ -312,7 +312,7 @@ fn what_should_keep_its_value_gets_the_step_that_keeps_it() {
 }
 
 #[test]
-fn what_cannot_be_planned_is_refused() {
+fn impossible_plans_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let bad = |arguments: &[&str]| explain(folder, arguments);
@@ -335,7 +335,7 @@ fn what_cannot_be_planned_is_refused() {
 
 /// A window of a free fall: from rest, the mean kinetic energy over a window from t to T is m g² (T³ − t³)/(6 (T − t)) before any impact.
 #[test]
-fn a_window_is_averaged_over() {
+fn means_over_a_window_are_planned() {
     let folder = tempfile::tempdir().unwrap();
     let disc = [
         "two-discs",
@@ -365,7 +365,7 @@ fn a_window_is_averaged_over() {
 /// Stopped trials leave a journal, from which the same command resumes; then the measurements are cached and the journal is removed.
 #[cfg(unix)]
 #[test]
-fn trials_that_were_stopped_go_on() {
+fn stopped_trials_resume() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let mut command = Command::cargo_bin("stripmine").unwrap();
@@ -396,7 +396,7 @@ fn trials_that_were_stopped_go_on() {
 
 /// A quantity that changes all the time has no stationary mean: `explain` estimates the mean over the whole run, from runs with different starts.
 #[test]
-fn what_changes_all_along_is_meant_over_the_whole_run() {
+fn nonstationary_quantities_are_averaged_over_the_run() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let falling =
@@ -428,7 +428,7 @@ fn what_changes_all_along_is_meant_over_the_whole_run() {
 }
 
 #[test]
-fn a_plan_for_a_time_has_the_least_error_that_it_allows() {
+fn plans_for_a_time_minimise_the_error() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let within = |seconds: &str| plan(&explain(folder, &[&GAS[..], &["--time", seconds, "--json"]].concat()));
@@ -454,7 +454,7 @@ fn a_plan_for_a_time_has_the_least_error_that_it_allows() {
 
 /// Errors fall with cost, and the biases of steps are shown with them; `work-precision` of a mean is the same chart.
 #[test]
-fn the_error_of_a_mean_is_charted_over_its_cost() {
+fn error_of_a_mean_is_charted_against_cost() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (chart, scene, quantity, ways) in [

@@ -55,7 +55,7 @@ fn differences(model: &Model, a: &Particles, b: &Particles) -> [f64; 2] {
 }
 
 #[test]
-fn trajectories_are_the_faithful_ones_but_for_rounding() {
+fn fast_engine_agrees_with_programs_except_for_rounding() {
     for scheme in SCHEMES {
         for (packing_fraction, friction) in [(0.84, true), (0.3, true), (0.1, false)] {
             let mut start = gas(400, packing_fraction, 7);
@@ -80,7 +80,7 @@ fn trajectories_are_the_faithful_ones_but_for_rounding() {
 }
 
 #[test]
-fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
+fn walls_gravity_and_floor_agree_with_programs() {
     let mut discs = Vec::new();
     for column in 0..8u32 {
         let x = 0.5 + f64::from(column);
@@ -114,7 +114,7 @@ fn walls_gravity_and_a_shaken_floor_are_the_faithful_ones() {
 
 /// Enough discs that building lists and sorting are split among threads.
 #[test]
-fn lists_and_order_are_the_same_on_any_number_of_threads() {
+fn lists_and_order_do_not_depend_on_threads() {
     let mut start = gas(40_000, 0.3, 5);
     (start.0.scheme, start.0.dt) = (Scheme::VelocityVerlet, 0.02);
     for (search, precision) in [
@@ -139,7 +139,7 @@ fn lists_and_order_are_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
+fn threads_instructions_and_resumption_give_the_same_bits() {
     // Long enough for lists to be rebuilt.
     const STEPS: u64 = 60;
     let (lattice, [_, sectors, lists]) = (LATTICE, SEARCHES);
@@ -180,7 +180,7 @@ fn threads_and_instructions_give_the_same_bits_and_so_does_going_on() {
 
 /// Cells so wide that many hold two discs and some three: the discs that the lattice has no cell for feel the same forces.
 #[test]
-fn conflicts_are_resolved_beside_the_lattice() {
+fn discs_sharing_a_cell_feel_the_same_forces() {
     for (scheme, edge) in [(Scheme::VelocityVerlet, 1.0), (Scheme::Gear(GearValues::Five), 1.2)] {
         let mut start = gas(400, 0.8, 9);
         let sides = start.0.domain().lengths();
@@ -241,7 +241,7 @@ fn naive_forces(model: &Model, discs: &Particles) -> Vec<[f64; 2]> {
 
 /// Size ratios that no lattice can hold, compared with a textbook velocity Verlet.
 #[test]
-fn wide_sizes_are_for_sectors_and_lists() {
+fn wide_size_ratios_work_with_sectors_and_lists() {
     const STEPS: u64 = 1000;
     let load = |overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
@@ -296,7 +296,7 @@ fn momentum_is_conserved_to_rounding() {
 
 /// Without damping, velocity Verlet in the fast engine conserves energy as well as Gear's scheme in the programs.
 #[test]
-fn energy_is_kept_over_ten_thousand_steps() {
+fn energy_is_conserved_over_ten_thousand_steps() {
     let drift = |scheme: Scheme, contacts: Contacts| {
         let mut start = gas(400, 0.84, 11);
         start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };

@@ -88,7 +88,7 @@ fn is_as_written(folder: &Path, preset: &str, most_beyond: f64) {
 }
 
 #[test]
-fn films_of_every_method_are_as_their_trajectories() {
+fn films_agree_with_trajectories_for_every_method() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     run(folder, "pipe-small", &["run.steps=200", "run.snapshot_every=50"]);
@@ -127,7 +127,7 @@ fn films_of_every_method_are_as_their_trajectories() {
 }
 
 #[test]
-fn a_film_of_nothing_or_of_one_frame_says_so() {
+fn films_report_missing_and_omitted_frames() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     run(

@@ -63,7 +63,7 @@ const ALL_WAYS: [&[&str]; 3] = [&[], &["--resume"], &["--overwrite"]];
 
 /// A folder that no run wrote is refused with its contents, however a run begins, and stays as it was.
 #[test]
-fn a_foreign_folder_is_left_alone() {
+fn foreign_folders_are_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     let run_names =
         ["scene.toml", "trajectory.xyz", "thermo.csv", "dump.lammpstrj", "final.data", "summary.json"];
@@ -82,7 +82,7 @@ fn a_foreign_folder_is_left_alone() {
 /// Names of foreign files are printed without control characters of the terminal.
 #[cfg(unix)]
 #[test]
-fn names_are_said_plainly() {
+fn foreign_file_names_are_escaped() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a\u{1b}[2Jb\u{202e}c"), "mine").unwrap();
     for mut command in [run(folder.path(), &[]), reproduce(folder.path())] {
@@ -98,7 +98,7 @@ fn names_are_said_plainly() {
 
 /// `--out .` in the folder of a user's scene leaves the scene there.
 #[test]
-fn a_scene_is_not_run_over() {
+fn runs_do_not_overwrite_their_scene() {
     let folder = tempfile::tempdir().unwrap();
     let scene = stripmine(&["scene", "show", "two-discs"]).output().unwrap().stdout;
     fs::write(folder.path().join("scene.toml"), &scene).unwrap();
@@ -112,7 +112,7 @@ fn a_scene_is_not_run_over() {
 
 /// A run's folder holds exactly the files of its list; `--overwrite` removes those and nothing else.
 #[test]
-fn only_what_a_run_wrote_is_removed() {
+fn overwrite_removes_only_files_of_the_run() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     succeed(run(&out, &["--set", "run.checkpoint_every=5"]));
@@ -141,7 +141,7 @@ fn only_what_a_run_wrote_is_removed() {
 
 /// A foreign file in a run's folder is not overwritten, even if it has a name that the run writes.
 #[test]
-fn a_file_that_the_run_did_not_write_is_in_the_way() {
+fn foreign_files_in_a_run_folder_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     succeed(run(&out, &["--set", "output.lammps_data=false"]));
@@ -180,7 +180,7 @@ fn links_are_not_followed() {
 
 /// A list with impossible names is refused, and nothing is removed.
 #[test]
-fn a_list_of_other_names_is_refused() {
+fn lists_with_foreign_names_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     fs::create_dir(&out).unwrap();
@@ -219,7 +219,7 @@ fn endless(folder: &Path) -> Child {
 
 /// A second process is told which process writes to the folder; after that one is killed, the folder is free.
 #[test]
-fn one_process_writes_into_a_folder() {
+fn only_one_process_writes_to_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let mut child = endless(&out);
@@ -299,7 +299,7 @@ fn results_replace_results_only() {
 
 /// Temporary folders left by killed sessions are removed by the next session; a foreign folder with such a name stays.
 #[test]
-fn leftovers_of_results_are_cleared_away() {
+fn leftover_temporary_folders_are_removed() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("reports");
     succeed(reproduce(&out));
@@ -341,7 +341,7 @@ fn links_among_results_are_not_followed() {
 
 /// The program recognises the committed results as its own.
 #[test]
-fn committed_results_are_known_as_ours() {
+fn committed_results_are_recognised() {
     let folder = tempfile::tempdir().unwrap();
     let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
     for name in ["README.md", "index.html"] {
@@ -365,7 +365,7 @@ fn committed_results_are_known_as_ours() {
 
 /// For every verb with `--out`: a user's file with the name of an output is refused by name and stays.
 #[test]
-fn no_verb_writes_over_what_it_did_not_write() {
+fn no_verb_overwrites_foreign_files() {
     let folder = tempfile::tempdir().unwrap();
     let there = folder.path().join("there");
     succeed(run(&there, &["--set", "run.thermo_every=5"]));
@@ -422,7 +422,7 @@ fn no_verb_writes_over_what_it_did_not_write() {
 
 /// Pictures replace earlier pictures of ours; foreign files are replaced only on request.
 #[test]
-fn pictures_are_written_over_where_they_are_ours() {
+fn only_our_own_pictures_are_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let [there, out] = ["there", "pictures"].map(|name| folder.path().join(name));
     succeed(run(&there, &["--set", "run.thermo_every=5"]));

@@ -52,7 +52,7 @@ fn forged(journal: &str, change: &dyn Fn(&Value) -> Value) -> String {
 }
 
 #[test]
-fn forged_lines_are_measured_again() {
+fn forged_journal_lines_are_measured_again() {
     let folder = tempfile::tempdir().unwrap();
     for (name, arguments) in [
         (

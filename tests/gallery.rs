@@ -34,7 +34,7 @@ fn files(kind: &str) -> BTreeSet<String> {
 
 /// Each scene has one picture and one command that runs it, and the page shows the picture.
 #[test]
-fn every_scene_has_a_picture_of_a_size_to_be_read() {
+fn every_gallery_scene_has_a_small_picture() {
     let (scenes, pictures) = (files("toml"), files("svg"));
     assert_eq!(scenes.len(), 12);
     assert_eq!(scenes, pictures);
@@ -53,7 +53,7 @@ fn every_scene_has_a_picture_of_a_size_to_be_read() {
 
 /// The page's commands, shortened to a few steps.
 #[test]
-fn every_scene_runs_and_is_drawn() {
+fn every_gallery_scene_runs_and_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let stripmine = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));

@@ -35,7 +35,7 @@ fn column(folder: &Path, name: &str) -> Vec<f64> {
 /// Z and the collision rate of a fluid at ν = 0.50 and 0.30 agree to 2 % with two independent codes (values of the specification
 /// of ISO99: Z = 4.1094 and 2.0632, ω = 7.017 and 2.3995), from the second half of a run of 2·10⁵ collisions.
 #[test]
-fn the_pressure_of_a_fluid_is_that_of_other_programs() {
+fn fluid_pressure_agrees_with_other_programs() {
     let folder = tempfile::tempdir().unwrap();
     for (packing, pressure, rate) in [("0.50", 4.1094, 7.017), ("0.30", 2.0632, 2.3995)] {
         let out = folder.path().join(packing);
@@ -59,7 +59,7 @@ fn the_pressure_of_a_fluid_is_that_of_other_programs() {
 
 /// A mixture of two kinds is compressed to a packing fraction that random placement cannot reach, and ISO99's engine gives the same run.
 #[test]
-fn two_kinds_of_discs_are_compressed() {
+fn mixtures_are_compressed() {
     let folder = tempfile::tempdir().unwrap();
     let set = [
         "domain.sides=[24.0, 24.0]",
@@ -103,7 +103,7 @@ fn a_cooling_gas_follows_haffs_law() {
 
 /// Engine, mask and instruction set do not change a bit, up to the end of the run.
 #[test]
-fn engines_and_masks_change_no_bit() {
+fn engines_and_masks_do_not_change_bits() {
     let folder = tempfile::tempdir().unwrap();
     let frames = |way: &str| {
         let out = folder.path().join(way);
@@ -134,7 +134,7 @@ fn listed(folder: &Path, domain: &str, positions: &str, velocities: &str, more: 
 
 /// Events that happen very late are found by both engines, however many rows are written before them.
 #[test]
-fn events_that_come_late_come() {
+fn late_events_are_found() {
     let folder = tempfile::tempdir().unwrap();
     // A disc winds round the box and approaches the other by a small amount each time.
     for (engine, rise) in [("fast", 2e-6), ("reference", 1e-4)] {
@@ -161,7 +161,7 @@ fn events_that_come_late_come() {
 /// Time passes with both engines if no event can happen; a number of events is refused when the scene is checked, or when
 /// no further event can happen.
 #[test]
-fn where_nothing_happens_time_passes() {
+fn time_passes_without_events() {
     let folder = tempfile::tempdir().unwrap();
     for (name, positions, velocities) in [
         ("rest", "[[5.0, 5.0], [8.0, 5.0]]", "[[0.0, 0.0], [0.0, 0.0]]"),
@@ -194,7 +194,7 @@ fn where_nothing_happens_time_passes() {
 /// A disc that slides on a floor bounces for ever once its bounces are elastic. If the contact duration makes them elastic so late that
 /// the run cannot end, both engines report the same event; with a longer duration the run continues.
 #[test]
-fn a_disc_that_comes_to_rest_is_named() {
+fn discs_at_rest_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let said = ["fast", "reference"].map(|engine| {
         let more = format!(
@@ -279,7 +279,7 @@ fn every_collision_is_logged() {
 
 /// Discs are compressed to a packing fraction of 0.85, isotropically; jamming is reported.
 #[test]
-fn dense_starts_are_grown() {
+fn dense_starts_are_compressed() {
     let folder = tempfile::tempdir().unwrap();
     let grown = ["--set", "particles.generate=compressed", "--set", "domain.sides=[20.0, 20.0]"];
     let with = |out: &str, more: &[&'static str]| {
@@ -304,7 +304,7 @@ fn dense_starts_are_grown() {
 
 /// Three very dissipative discs in a line collide without end; this is reported with the pair.
 #[test]
-fn inelastic_collapse_is_found_out_and_cured() {
+fn inelastic_collapse_is_detected_and_avoided() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("collapse.toml");
     // One dimension, three particles: collapse for e < 7 − 4 √3 = 0.0718 (McNamara and Young).
@@ -324,7 +324,7 @@ fn inelastic_collapse_is_found_out_and_cured() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_what_may_be() {
+fn impossible_hard_disc_scenes_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let refused = |scene: &str, set: &[&str], code: i32, words: &[&str]| {
@@ -378,7 +378,7 @@ fn what_cannot_be_is_refused_with_what_may_be() {
 /// A thermal wall has its own seed if the start has none: runs with different seeds differ, the same seed gives the same run, and a run
 /// that starts from a state draws other numbers than the run before.
 #[test]
-fn a_thermal_wall_has_a_seed() {
+fn thermal_walls_have_a_seed() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.toml");
     let text = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = [10.0, 10.0]\nperiodic = [true, false]\n\

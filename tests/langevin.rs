@@ -45,7 +45,7 @@ fn last_frame(folder: &Path) -> String {
 /// ⟨r²⟩ of free particles is 4 D (t − τ (1 − e^(−t/τ))) from a thermal start and 4 D (t − 2 τ (1 − e^(−t/τ)) + (τ/2)(1 − e^(−2t/τ)))
 /// from rest, with D = kT/γ and τ = m/γ. For 20 000 particles it agrees to five standard errors at all times; so does the temperature.
 #[test]
-fn free_particles_diffuse_as_the_exact_result_has_it() {
+fn free_diffusion_agrees_with_the_exact_result() {
     let folder = tempfile::tempdir().unwrap();
     let (count, gamma, kt, mass) = (20_000.0, 0.8, 1.3, 0.5);
     let bath = ["law.drag=0.8", "law.bath_temperature=1.3", "particles.mass=0.5", "particles.count=20000"];
@@ -78,7 +78,7 @@ fn free_particles_diffuse_as_the_exact_result_has_it() {
 /// of the velocities after the bath; those at the end of the step, in the trajectory, are colder by dt²⟨F²⟩/(4 m), which is 1.07 %
 /// as measured over ten times as long.
 #[test]
-fn the_temperature_of_a_dense_fluid_is_that_of_the_bath() {
+fn dense_fluid_has_the_bath_temperature() {
     let folder = tempfile::tempdir().unwrap();
     for (kind, dt, expected) in [("baoab", 0.015, 0.0107), ("stochastic", 0.01, 0.0)] {
         let out = folder.path().join(kind);
@@ -109,7 +109,7 @@ fn the_temperature_of_a_dense_fluid_is_that_of_the_bath() {
 /// The noise has its own seed: other seeds give other trajectories from one start, equal seeds the same bits, also for listed
 /// particles, for those of a file, and through the scene that a run writes. Without it the noise follows the start's seed.
 #[test]
-fn the_noise_has_a_seed_of_its_own() {
+fn noise_has_its_own_seed() {
     let folder = tempfile::tempdir().unwrap();
     let short = ["run.steps=30", "run.snapshot_every=0"];
     let began = |name: &str, scene: &str, sets: &[&str]| {
@@ -157,7 +157,7 @@ fn the_noise_has_a_seed_of_its_own() {
 /// Empty boxes have hardly more sectors than particles: the cost of a step depends on the particles, for every search and
 /// precision, and the pairs are the same.
 #[test]
-fn empty_boxes_cost_what_their_particles_cost() {
+fn cost_of_empty_boxes_depends_on_particles() {
     let folder = tempfile::tempdir().unwrap();
     for (name, side, spacing) in
         [("dense", "5.0", "0.13"), ("thin", "60.0", "0.2"), ("empty", "1000.0", "0.2")]
@@ -189,7 +189,7 @@ fn empty_boxes_cost_what_their_particles_cost() {
 
 /// Friction by the velocity of the previous step heats to kT/(1 − γ dt/2m); by that after half a kick it does not.
 #[test]
-fn the_scheme_as_printed_heats() {
+fn printed_scheme_heats_the_gas() {
     let folder = tempfile::tempdir().unwrap();
     let temperature = |kind: &str| {
         let out = folder.path().join(kind);
@@ -209,7 +209,7 @@ fn the_scheme_as_printed_heats() {
 
 /// All searches find the same pairs: after 40 steps of a dense scene the positions agree to rounding.
 #[test]
-fn searches_agree_and_threads_sets_and_resumption_change_no_bit() {
+fn searches_threads_and_resumption_agree() {
     let folder = tempfile::tempdir().unwrap();
     let dense = ["law.kind=wca", "particles.count=900", "run.thermo_every=20", "run.snapshot_every=20"];
     let frame = |name: &str, sets: &[&str], parts: &[&str], more: &[&str]| {
@@ -269,7 +269,7 @@ fn searches_agree_and_threads_sets_and_resumption_change_no_bit() {
 /// A step that is too long makes particles leave the box: the run stops, reports their number and suggests a step. With losses allowed the
 /// run continues, counts and lists them, also across a resumption, and the rest stays finite.
 #[test]
-fn losses_are_counted_listed_and_survived() {
+fn losses_are_counted_and_listed() {
     let folder = tempfile::tempdir().unwrap();
     let thin = [
         "particles.count=4000",
@@ -441,7 +441,7 @@ fn free_particles_cross_the_box_in_a_step() {
 
 /// Losses caused by pairs are reported with a suggested step; if the step is within all limits, with the displacement and the side of the box.
 #[test]
-fn losses_are_said_with_what_would_help() {
+fn losses_are_reported_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let said = |name: &str, sets: &[&str]| {
         let output = begin(
@@ -474,7 +474,7 @@ fn losses_are_said_with_what_would_help() {
 /// A run from the last frame of another one has new noise, from a file and from a list: after the same number of
 /// steps the velocities of both are uncorrelated. Runs from one start are the same, and another noise_seed gives other noise.
 #[test]
-fn a_run_from_a_frame_does_not_repeat_the_noise() {
+fn runs_from_frames_have_new_noise() {
     let folder = tempfile::tempdir().unwrap();
     let free = [
         "domain.sides=[50, 50]",
@@ -530,7 +530,7 @@ fn a_run_from_a_frame_does_not_repeat_the_noise() {
 
 /// Without friction there is no bath: momentum is conserved, and a single free particle has no temperature; with it, kT is half of m v².
 #[test]
-fn the_temperature_counts_what_the_bath_moves() {
+fn bath_temperature_counts_degrees_of_freedom() {
     let folder = tempfile::tempdir().unwrap();
     let rows = |name: &str, sets: &[&str]| {
         let out = folder.path().join(name);
@@ -563,7 +563,7 @@ fn yukawa(distance: f64) -> f64 {
 /// Two Yukawa particles at rest, 1.2 apart, have the energy and pressure of the formula, with r F = U (κ r + 1); without friction the error
 /// of the energy in a collision is proportional to dt².
 #[test]
-fn two_yukawa_particles_are_those_of_the_formula() {
+fn yukawa_pair_agrees_with_the_formula() {
     let folder = tempfile::tempdir().unwrap();
     let rows = |name: &str, sets: &[&str], columns: &[&str]| -> Vec<Vec<f64>> {
         let two = [
@@ -605,7 +605,7 @@ fn two_yukawa_particles_are_those_of_the_formula() {
 /// Pressure of a thin Yukawa fluid, P = ρ kT (1 + B₂ ρ + B₃ ρ²) with virial coefficients by quadrature: the contribution of pairs agrees within
 /// 2.5 %, of which B₄ is half a percent and the statistical error as much.
 #[test]
-fn a_thin_yukawa_fluid_has_the_pressure_of_its_virial_coefficients() {
+fn thin_yukawa_fluid_agrees_with_virial_expansion() {
     const PARTS: usize = 60;
     let part = 2.5 / PARTS as f64;
     let mayer = |distance: f64| (-yukawa(distance)).exp() - 1.0;

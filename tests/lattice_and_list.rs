@@ -37,28 +37,28 @@ fn agree(precision: Precision, start: &(Model, Particles), rebuild: Rebuild, ste
 }
 
 #[test]
-fn trajectories_are_equal_to_the_bit_over_ten_thousand_steps() {
+fn bits_agree_over_ten_thousand_steps() {
     trajectories_agree(Precision::F64, Coordinates::CellRelative, Rebuild::Cells, 10_000);
 }
 
 #[test]
-fn trajectories_are_equal_to_the_bit_with_absolute_positions_and_lists_of_all_pairs() {
+fn bits_agree_with_absolute_positions() {
     trajectories_agree(Precision::F64, Coordinates::Absolute, Rebuild::AllPairs, 2_000);
 }
 
 #[test]
-fn trajectories_are_equal_to_the_bit_in_single_precision() {
+fn bits_agree_in_single_precision() {
     trajectories_agree(Precision::F32, Coordinates::CellRelative, Rebuild::Cells, 2_000);
 }
 
 #[test]
-fn trajectories_of_the_printed_text_are_equal_to_the_bit() {
+fn bits_agree_with_the_printed_program() {
     agree(Precision::F64, &printed_gas(400, 0.84, 7), Rebuild::AllPairs, 2_000);
 }
 
 /// All executions of BP93's own program, on every instruction set, give the same run; our program agrees except for rounding.
 #[test]
-fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
+fn printed_program_agrees_for_every_execution() {
     const STEPS: u64 = 200;
     let start = printed_gas(200, 0.84, 3);
     let after = |start: &(Model, Particles), execution, set| {
@@ -91,7 +91,7 @@ fn the_printed_text_runs_the_same_by_every_execution_and_beside_ours() {
 
 /// The small pipe with both programs: fixed and moving walls, a closed side, gravity.
 #[test]
-fn the_pipe_of_the_printed_text_is_ours_but_for_rounding() {
+fn printed_program_gives_our_pipe_within_rounding() {
     use stripmine_physics::method::lattice_md::{Document, assemble};
     let run = |preset: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();

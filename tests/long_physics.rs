@@ -173,7 +173,7 @@ fn figure(pipes: &[Pipe], which: usize) -> Over {
 
 #[test]
 #[ignore = "long suite: cargo test --release --test long_physics -- --ignored"]
-fn the_pipe_flows_and_clusters_as_tried() {
+fn pipe_flow_and_waves_agree_with_trials() {
     let pipes = &*PIPES;
     assert!(figure(pipes, START).range[1] < 0.25, "{}", figure(pipes, START));
     // Every run has waves.
@@ -189,7 +189,7 @@ fn the_pipe_flows_and_clusters_as_tried() {
 
 #[test]
 #[ignore = "long suite: cargo test --release --test long_physics -- --ignored"]
-fn half_the_time_step_gives_the_same_statistics() {
+fn halving_the_step_keeps_the_statistics() {
     for (which, (name, _)) in FIGURES.iter().enumerate() {
         let (whole, half) = (figure(&PIPES, which), figure(&HALVED, which));
         assert!(which == START || whole.agrees(&half), "{name}: {whole} against {half}");
@@ -198,7 +198,7 @@ fn half_the_time_step_gives_the_same_statistics() {
 
 #[test]
 #[ignore = "long suite: cargo test --release --test long_physics -- --ignored"]
-fn weak_damping_and_an_elastic_gas_make_no_waves() {
+fn weak_damping_makes_no_waves() {
     for pipes in [&*WEAK, &*ELASTIC] {
         let late = figure(pipes, LATE);
         assert!(late.range[1] < 0.6, "{late}");
@@ -208,7 +208,7 @@ fn weak_damping_and_an_elastic_gas_make_no_waves() {
 
 #[test]
 #[ignore = "long suite: cargo test --release --test long_physics -- --ignored"]
-fn the_figures_are_reported() {
+fn pipe_figures_are_reported() {
     let tried = ["0.80–0.90", "0.058–0.068", "≥ 1.08", "0.10", "3.5 (2.6–4.6)", "0.029", "0.24"];
     let mut text = format!(
         "# pipe-small compared with earlier trials\n\nMean ± standard error over {SEEDS} seeds (smallest–largest), 2 s. \

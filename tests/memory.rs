@@ -27,7 +27,7 @@ const FRAME: f64 = 8.8e6;
 /// a frame less. The frame is a margin for the thread that writes frames: it may or may not still hold one frame when the next is
 /// made, and the estimate counts both.
 #[test]
-fn a_run_takes_the_memory_that_was_foreseen() {
+fn runs_take_the_estimated_memory() {
     judged_by(&[
         &["machine.engine=fast", "search.by=lattice", "particles.packing_fraction=0.7"],
         &["machine.execution=chained"],
@@ -40,7 +40,7 @@ fn a_run_takes_the_memory_that_was_foreseen() {
 /// Further configurations.
 #[test]
 #[ignore = "long: cargo test --test memory -- --ignored"]
-fn other_ways_take_the_memory_that_was_foreseen() {
+fn rarer_configurations_take_the_estimated_memory() {
     judged_by(&[
         &["machine.engine=fast", "search.by=lattice", "particles.packing_fraction=0.05"],
         &["machine.execution=eager", "machine.precision=mixed", "law.friction=0"],
@@ -57,7 +57,7 @@ fn judged_by(ways: &[&[&str]]) {
 
 /// Configurations of twelve thousand bodies.
 #[test]
-fn bodies_take_the_memory_that_was_foreseen() {
+fn bodies_take_the_estimated_memory() {
     let mut said = Vec::new();
     for sets in [
         &["machine.engine=fast"][..],
@@ -121,7 +121,7 @@ fn needed_and_most(preset: &str, sets: &[&str], ends: [u32; 2]) -> (f64, f64) {
 
 /// Discs on several ranks of one process, to a tenth below: the memory kept by allocators of several threads cannot be estimated to the byte.
 #[test]
-fn ranks_take_the_memory_that_was_foreseen() {
+fn ranks_take_the_estimated_memory() {
     for (search, ranks) in [("lattice", 2), ("lattice", 4), ("neighbor-list", 4)] {
         let sets =
             ["particles.count=400000", "run.steps=2", "machine.engine=fast", &format!("search.by={search}")]
@@ -145,7 +145,7 @@ fn ranks_take_the_memory_that_was_foreseen() {
 
 /// Particles in a bath with every search.
 #[test]
-fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
+fn langevin_runs_take_the_estimated_memory() {
     let mut said = Vec::new();
     for by in ["search.by=neighbor-list", "search.by=sectors", "search.by=lattice"] {
         let sets = ["particles.count=100000", "domain.sides=[160, 160]", by];
@@ -156,7 +156,7 @@ fn particles_in_a_bath_take_the_memory_that_was_foreseen() {
 
 /// Discs at earlier rows, stored for displacements, and functions sampled at snapshots.
 #[test]
-fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
+fn structure_samples_take_the_estimated_memory() {
     let mut said = Vec::new();
     for structure in [r#"["msd"]"#, r#"["vacf", "g(r)", "S(k)", "psi6", "velocities"]"#] {
         let structure = format!("output.structure={structure}");
@@ -174,7 +174,7 @@ fn looks_at_the_structure_take_the_memory_that_was_foreseen() {
 
 /// Hard discs with both engines; three times as many, so three frames.
 #[test]
-fn hard_discs_take_the_memory_that_was_foreseen() {
+fn hard_discs_take_the_estimated_memory() {
     let ways = ["machine.engine=fast", "machine.engine=reference"];
     let said =
         ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 3.0 * FRAME));
@@ -183,7 +183,7 @@ fn hard_discs_take_the_memory_that_was_foreseen() {
 
 /// A start takes memory for its particles, not for the box: a thousand positions are drawn from a mesh of two milliard.
 #[test]
-fn an_empty_box_takes_no_memory() {
+fn empty_boxes_take_no_memory() {
     let check = ["scene", "check", "langevin-free", "--set", "domain.sides=[4600, 4600]"].map(str::to_owned);
     let taken = peak(&check);
     assert!(taken < 64_000_000, "{taken} bytes");
@@ -192,7 +192,7 @@ fn an_empty_box_takes_no_memory() {
 /// Under a limit of the address space or of the data, a run either is refused with a message that names the limit, or completes: it is not
 /// aborted half-way, whatever the limit.
 #[test]
-fn limits_of_the_process_are_asked() {
+fn process_limits_are_respected() {
     let folder = tempfile::tempdir().unwrap();
     let under = |limit: &str, scene: &str, sets: &[&str]| {
         let mut command = Command::new("sh");
@@ -288,7 +288,7 @@ fn no_limit_of_memory_aborts_a_verb() {
 /// Measurements and comparisons check memory before they allocate it: these do not fit into 300 MiB, with some 700 bytes a disc
 /// and, for a comparison, two runs at once.
 #[test]
-fn every_verb_that_simulates_asks_for_memory() {
+fn every_simulating_verb_checks_memory() {
     let folder = tempfile::tempdir().unwrap();
     for words in [
         "bench lattice --particles 500000 --steps 1 --repeats 1 --threads 2",
@@ -310,7 +310,7 @@ fn every_verb_that_simulates_asks_for_memory() {
 
 /// Memory of the process while it refuses: a tenth of a gigabyte is far below the request.
 #[test]
-fn what_does_not_fit_is_refused_before_it_is_made() {
+fn oversized_scenes_are_refused_before_allocation() {
     let folder = tempfile::tempdir().unwrap();
     let gas = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [SIDE, SIDE]\n[particles]\ngenerate = \"random\"\ncount = COUNT\n\
                radius = 0.5\nmass = 1.0\n[law]\nstiffness = 187.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n[machine]\nengine = \"programs\"\n";

@@ -89,7 +89,7 @@ fn orbits_close_and_errors_fall_with_the_order() {
 /// Momentum, centre and angular momentum are conserved up to rounding by every scheme except those that are meant to fail; the figure of eight
 /// closes after its period.
 #[test]
-fn what_gravity_conserves_is_conserved() {
+fn gravity_conserves_momentum_and_energy() {
     let folder = tempfile::tempdir().unwrap();
     for kind in ["leapfrog", "yoshida-6", "hermite-4", "gear-6", "runge-kutta-4"] {
         let out = folder.path().join(kind);
@@ -113,7 +113,7 @@ fn what_gravity_conserves_is_conserved() {
 
 /// Bits do not depend on threads, instruction set and interruption, for exact arithmetic.
 #[test]
-fn threads_sets_and_resumption_change_no_bit() {
+fn nbody_bits_do_not_depend_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     let frame = |name: &str, sets: &[&str], parts: &[&str], more: &[&str]| {
         let out = folder.path().join(name);
@@ -161,7 +161,7 @@ fn threads_sets_and_resumption_change_no_bit() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_and_what_breaks_is_said() {
+fn impossible_nbody_scenes_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let list = |rows: &str| format!("particles.bodies=[{rows}]");
     let [one, heavy, twice] = [
@@ -212,7 +212,7 @@ fn what_cannot_be_is_refused_and_what_breaks_is_said() {
 /// Two configurations of one scene side by side: exact arithmetic has the same bits on two instruction sets; the sum as written rounds
 /// differently, and the first difference is reported with its moment.
 #[test]
-fn ways_are_compared() {
+fn configurations_are_compared() {
     let compare = |more: &[&str]| -> Value {
         let scene = ["compare", "plummer", "--json", "--set", "particles.count=64", "--set", "run.steps=128"];
         let output = stripmine(&[&scene[..], more].concat());
@@ -233,7 +233,7 @@ fn ways_are_compared() {
 
 /// Few bodies are summed pair by pair, many are swept; the choice is reported and stored, and a resumed run keeps it.
 #[test]
-fn the_engine_is_chosen_by_the_number_of_bodies() {
+fn number_of_bodies_determines_the_engine() {
     let folder = tempfile::tempdir().unwrap();
     for (preset, engine) in [("kepler", "reference"), ("figure-eight", "reference"), ("plummer", "fast")] {
         let out = folder.path().join(preset);
@@ -248,7 +248,7 @@ fn the_engine_is_chosen_by_the_number_of_bodies() {
 
 /// A run in parts has the counts and the largest error of a run in one piece.
 #[test]
-fn a_run_in_parts_counts_as_one_in_one_piece() {
+fn resumed_counters_equal_uninterrupted_ones() {
     let folder = tempfile::tempdir().unwrap();
     let ended = |name: &str, parts: &[&str]| {
         let mut last = Value::Null;
@@ -269,7 +269,7 @@ fn a_run_in_parts_counts_as_one_in_one_piece() {
 /// Limit of the step by hand, 2π (1 − e)^{3/2}/20 = 0.111072 at e = 1/2: reported as a multiple of a shorter step, with a warning beyond twice the
 /// limit.
 #[test]
-fn the_step_is_held_against_its_limit() {
+fn step_is_compared_with_its_limit() {
     let folder = tempfile::tempdir().unwrap();
     for (dt, expected, warned) in [
         ("0.01", "at most 0.11107, 11.1 times dt", None),

@@ -63,7 +63,7 @@ const SCENES: [(&str, Sets<'static>); 5] = [
 
 /// A row compared with naive sums over the current particles.
 #[test]
-fn a_row_says_what_the_naive_sums_say() {
+fn rows_agree_with_naive_sums() {
     for (scene, of_scene) in SCENES {
         for way in WAYS {
             let sets = [of_scene, way];
@@ -112,7 +112,7 @@ fn bits(row: &[f64]) -> Vec<u64> {
 
 /// Threads and instructions do not change a bit, with more discs than a single thread handles.
 #[test]
-fn no_thread_and_no_instruction_changes_a_row() {
+fn rows_do_not_depend_on_threads_or_instructions() {
     for way in &WAYS[..5] {
         let row = |threads: usize, set: InstructionSet| {
             let instructions = format!("machine.instruction_set={}", set.name());
@@ -141,7 +141,7 @@ fn of_the_run(simulation: &dyn Simulation) -> (Map<String, Value>, String) {
 /// A resumed run, at once and after more steps, reports the same as a run in one piece: grains that have crossed periodic
 /// sides are not counted again, and counters do not restart.
 #[test]
-fn what_is_gone_on_with_says_what_one_piece_says() {
+fn resumed_runs_report_as_uninterrupted_ones() {
     let more: [Sets<'_>; 3] = [
         &["machine.engine=programs", "machine.execution=eager", "search.by=lattice"],
         &["machine.engine=programs", "machine.coordinates=absolute", "search.by=lattice"],
@@ -172,7 +172,7 @@ fn what_is_gone_on_with_says_what_one_piece_says() {
 
 /// Counters of lists continue in the engine shared by all methods.
 #[test]
-fn lists_are_counted_on_by_other_methods() {
+fn list_counters_continue_in_other_methods() {
     let sets = owned(&[&["search.by=neighbor-list", "run.steps=200"]]);
     let begin = || {
         let (prepared, _) = load("langevin-dense", &sets, METHODS).unwrap();
@@ -193,7 +193,7 @@ fn lists_are_counted_on_by_other_methods() {
 
 /// A disc on the lower rim of a periodic side has not crossed it, wherever rounding places it.
 #[test]
-fn a_disc_on_the_rim_has_crossed_nothing() {
+fn disc_on_the_rim_has_not_crossed() {
     for origin in ["0.0", "0.1", "-0.7", "1e3", "-3.3", "0.3"] {
         for way in WAYS {
             let origin_of_box = format!("domain.origin=[{origin}, {origin}]");
@@ -223,7 +223,7 @@ fn a_disc_on_the_rim_has_crossed_nothing() {
 
 /// Observation has its own phase, and is carried out once for any number of callers.
 #[test]
-fn a_moment_is_observed_once() {
+fn observation_is_computed_once() {
     let mut simulation = begin("dense-gas", &[]);
     advance(simulation.as_mut(), 10);
     simulation.reset_phases();
@@ -241,7 +241,7 @@ fn a_moment_is_observed_once() {
 /// Pressure of random discs and walls, by the explicit formula: (K + ½ Σ F_N |r_i − r_j|)/A over the contacts between grains, with
 /// their kinetic energy K about the mean motion along x, which is periodic, F_N = max(k_N ξ^{3/2} − γ_N M_eff (v_i − v_j)·n, 0).
 #[test]
-fn the_pressure_is_that_of_the_formula() {
+fn pressure_agrees_with_the_formula() {
     let domain = Domain::planar([-1.0, 2.0], [7.0, 9.0], [true, false]);
     let mut by_damping = 0.0;
     for seed in 0..20 {

@@ -23,7 +23,7 @@ fn is_clean(text: &str) -> bool {
 }
 
 #[test]
-fn no_message_carries_what_a_terminal_obeys() {
+fn messages_have_no_control_characters() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
     let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/two.xyz");
@@ -103,7 +103,7 @@ fn no_message_carries_what_a_terminal_obeys() {
 /// Names of files and folders, columns of tables and scenes appear on standard output, as words and as data, without control
 /// characters; data reads back to the same.
 #[test]
-fn standard_output_carries_none_either() {
+fn standard_output_has_no_control_characters() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Command::cargo_bin("stripmine")
         .unwrap()
@@ -167,7 +167,7 @@ fn standard_output_carries_none_either() {
 
 /// Checkpoints and folders with control characters in their names.
 #[test]
-fn no_message_of_a_checkpoint_does_either() {
+fn checkpoint_messages_have_no_control_characters() {
     use stripmine_physics::io::checkpoint::{CheckpointError, Fault, Kept};
     for nasty in NASTY {
         let error = CheckpointError {
@@ -183,7 +183,7 @@ fn no_message_of_a_checkpoint_does_either() {
 /// Endless devices, pipes without a writer and folders are refused before they are opened.
 #[cfg(unix)]
 #[test]
-fn what_is_no_ordinary_file_is_refused() {
+fn only_ordinary_files_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("pipe.toml");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
@@ -218,7 +218,7 @@ fn what_is_no_ordinary_file_is_refused() {
 /// No verb blocks on a pipe at the name of one of its files: it refuses, or continues without the file.
 #[cfg(unix)]
 #[test]
-fn no_verb_waits_at_a_pipe() {
+fn no_verb_blocks_on_a_pipe() {
     const LONGEST: std::time::Duration = std::time::Duration::from_secs(120);
     let folder = tempfile::tempdir().unwrap();
     let ended = |arguments: &[&str]| {
@@ -314,7 +314,7 @@ fn many_mistakes_are_counted() {
 
 /// The column of an item is found without counting from the start of its line.
 #[test]
-fn a_long_line_is_read_in_time_that_grows_with_its_length() {
+fn long_lines_are_read_in_linear_time() {
     use stripmine_physics::method::lattice_md::Document;
     let text = Document::load("two-discs", &[]).unwrap().scene.to_toml();
     let list =
@@ -331,7 +331,7 @@ fn a_long_line_is_read_in_time_that_grows_with_its_length() {
 }
 
 #[test]
-fn threads_are_as_many_as_make_sense() {
+fn number_of_threads_is_bounded() {
     let folder = tempfile::tempdir().unwrap();
     for threads in ["0", "1025", "65535", "99999999999", "-1"] {
         let (code, text) = said(&["scene", "list", "--threads", threads], folder.path());
@@ -343,7 +343,7 @@ fn threads_are_as_many_as_make_sense() {
 
 /// Overlaps of discs in one heap are counted up to a bound, and the deepest is named.
 #[test]
-fn a_heap_of_discs_is_refused_without_counting_it_out() {
+fn overlaps_of_a_heap_are_counted_partially() {
     let folder = tempfile::tempdir().unwrap();
     let header = "Lattice=\"10.0 0 0 0 8.0 0 0 0 1\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
     let rows: String = (1..=8000).map(|id| format!("Si 5 5 0 {id} 0 0 0 0.5 1 0 0 0\n")).collect();

@@ -51,7 +51,7 @@ fn energy_error(values: GearValues, dt: f64, time: f64) -> [f64; 2] {
 /// The pressure of soft discs is that of hard ones of their effective diameter, d = 1 − ∫ exp(−u/T) dξ (Barker and Henderson), to
 /// first order in their softness. Henderson's equation of state is accurate to 0.3 % at this density.
 #[test]
-fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter() {
+fn soft_discs_have_their_effective_hard_disc_pressure() {
     let mut start = gas(400, 0.40, 5);
     for disc in start.1.all_mut() {
         (disc.radius, disc.mass, disc.omega) = (0.5, 1.0, 0.0);
@@ -82,7 +82,7 @@ fn the_pressure_of_soft_discs_is_that_of_hard_ones_of_their_effective_diameter()
 
 /// Energy of undamped Hertz collisions converges at about dt^2.2 with any scheme: the force has half a derivative too few.
 #[test]
-fn energy_of_an_undamped_gas_converges_with_the_time_step() {
+fn energy_error_converges_with_the_step() {
     for values in GearValues::ALL {
         let dts = [0.02, 0.01, 0.005, 0.0025];
         let errors = dts.map(|dt| energy_error(values, dt, 10.0));
@@ -98,7 +98,7 @@ fn energy_of_an_undamped_gas_converges_with_the_time_step() {
 }
 
 #[test]
-fn momentum_of_a_periodic_gas_is_conserved_to_rounding() {
+fn periodic_gas_conserves_momentum_to_rounding() {
     let start = gas(400, 0.84, 5);
     let mut gas = lattice(&start);
     let first = observe(&gas, &start.0);
@@ -211,7 +211,7 @@ fn hertz_time(stiffness: f64, speed: f64) -> f64 {
 
 /// Damped collisions converge at first order only: the damping jumps at first contact, which falls inside a step.
 #[test]
-fn collisions_restitute_as_an_integration_of_its_own_says() {
+fn collisions_agree_with_an_independent_integration() {
     println!("speed gamma clamped |  restitution, integrated |  duration, integrated");
     for cohesionless in [true, false] {
         for speed in [0.05, 0.2, 0.8] {
@@ -248,7 +248,7 @@ fn collisions_restitute_as_an_integration_of_its_own_says() {
 }
 
 #[test]
-fn undamped_collisions_last_as_long_as_hertz_says() {
+fn undamped_collisions_last_the_hertz_time() {
     for speed in [0.05, 0.2, 0.8] {
         let contact = Contact { normal_damping: 0.0, friction: 0.0, ..CONTACT };
         let hertz = hertz_time(contact.stiffness, speed);
@@ -266,7 +266,7 @@ fn undamped_collisions_last_as_long_as_hertz_says() {
 /// Convergence of the rebound speed of an undamped collision with the time step: rms over the phase of the step at which it
 /// begins.
 #[test]
-fn an_undamped_collision_converges_at_more_than_second_order() {
+fn undamped_collisions_converge_above_second_order() {
     let contact = Contact { normal_damping: 0.0, friction: 0.0, ..CONTACT };
     let (speed, phases, dts) = (0.2, 16, [0.016, 0.008, 0.004, 0.002]);
     for values in GearValues::ALL {
@@ -326,7 +326,7 @@ fn oblique(contact: Contact, normal: f64, shear: f64) -> ([f64; 2], [f64; 2], Pa
 /// Oblique collisions with a linear spring agree with LAMMPS's `gran/hooke` in positions, velocities and spins, with steps 25 times as
 /// long.
 #[test]
-fn linear_contacts_are_those_of_lammps() {
+fn linear_contacts_agree_with_lammps() {
     let table = include_str!("rivals/linear_contacts.csv").lines().filter(|line| !line.starts_with('#'));
     let contact = Contact {
         spring: Spring::Linear,
@@ -366,7 +366,7 @@ fn linear_contacts_are_those_of_lammps() {
 }
 
 #[test]
-fn friction_is_coulombs_where_surfaces_slide_and_less_where_they_roll() {
+fn friction_is_coulombs_for_sliding_surfaces() {
     let stiff = Contact { stiffness: 18_700.0, normal_damping: 0.0, friction: 0.3, ..CONTACT };
     for shear in [-1.0, 1.0] {
         let sliding = Contact { shear_damping: 1e5, ..stiff };
@@ -409,7 +409,7 @@ fn bits(method: &Grains) -> Vec<(String, Vec<u64>)> {
 }
 
 #[test]
-fn threads_and_instructions_give_the_same_bits() {
+fn bits_do_not_depend_on_threads_or_instructions() {
     let start = gas(8200, 0.84, 3);
     let run = |threads: usize, set: InstructionSet| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -454,7 +454,7 @@ fn ids(failure: &Failure) -> Vec<u32> {
 }
 
 #[test]
-fn a_velocity_that_is_no_number_stops_the_first_step() {
+fn velocity_nan_stops_the_first_step() {
     let mut start = gas(400, 0.84, 2);
     start.1.all_mut()[123].velocity[1] = f64::NAN;
     let id = start.1.all()[123].id;
@@ -463,7 +463,7 @@ fn a_velocity_that_is_no_number_stops_the_first_step() {
 }
 
 #[test]
-fn a_disc_that_leaves_a_closed_box_is_named_in_its_step() {
+fn disc_leaving_a_closed_box_is_named() {
     // A distance of 0.3025 remains, at 0.005 a step.
     let discs = [
         grain(7, [2.0, 2.0], [0.0; 2], 0.5, 1.0),
@@ -490,7 +490,7 @@ fn ghosts(stop_penetration: f64) -> (Model, Particles) {
 }
 
 #[test]
-fn a_contact_beyond_the_limit_names_both_discs_in_its_step() {
+fn too_deep_contact_names_both_discs() {
     // 1.95 − 0.04 n < 0.7: n = 32, at 0.67.
     let failure = breaks(&ghosts(0.3), 100, FailureKind::TOO_DEEP, 32);
     assert_eq!(ids(&failure), [5, 12]);
@@ -499,7 +499,7 @@ fn a_contact_beyond_the_limit_names_both_discs_in_its_step() {
 }
 
 #[test]
-fn two_discs_in_one_cell_are_named_in_their_step() {
+fn discs_in_one_cell_are_named() {
     // Step 49 takes the second disc from 3.01 to 2.99, into the cell of the first at 2.985.
     let mut start = ghosts(0.999);
     start.1.all_mut()[0].position[0] = 2.005;

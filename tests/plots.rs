@@ -10,7 +10,7 @@ fn stripmine(arguments: &[&str]) -> Output {
 
 /// The terminal shows a line for each quantity that changes; an unknown column is refused with the known ones.
 #[test]
-fn runs_are_seen_in_the_terminal() {
+fn plots_appear_in_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("two-discs");
     let (run, plots) = (run.to_str().unwrap(), folder.path().join("pictures"));
@@ -32,7 +32,7 @@ fn runs_are_seen_in_the_terminal() {
 
 /// Files of a run may have been edited: any contents give pictures or an exit code, never a panic.
 #[test]
-fn a_run_that_was_changed_is_drawn_or_refused() {
+fn edited_runs_are_drawn_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("two-discs");
     let short = ["--set", "run.steps=40", "--set", "run.thermo_every=10", "--set", "run.snapshot_every=20"];
@@ -120,7 +120,7 @@ fn frames_with(frames: &str, property: &str, value: &str, all: bool) -> String {
 
 /// Extreme but finite numbers of particles, with every colour: pictures, or an exit code, never a panic.
 #[test]
-fn extreme_particles_are_drawn_or_refused_in_every_colour() {
+fn extreme_particles_are_drawn_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("gas");
     let short = ["particles.count=100", "run.steps=20", "run.thermo_every=10", "run.snapshot_every=10"]
@@ -150,7 +150,7 @@ fn extreme_particles_are_drawn_or_refused_in_every_colour() {
 
 /// A run's folder is found by the name of its scene.
 #[test]
-fn a_run_is_found_by_the_name_of_its_scene() {
+fn runs_are_found_by_scene_name() {
     let folder = tempfile::tempdir().unwrap();
     let stripmine = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
@@ -186,7 +186,7 @@ fn between<'t>(text: &'t str, from: &str, to: &str) -> &'t str {
 /// The ribbon of a mean is drawn at the mean and error bar of `summary.json` and begins at the end of the transient, which is shaded in the
 /// picture.
 #[test]
-fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
+fn charts_show_mean_and_transient_of_the_summary() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("dense");
     let (run, plots) = (run.to_str().unwrap(), folder.path().join("pictures"));
@@ -234,7 +234,7 @@ fn a_chart_has_the_mean_of_the_summary_and_its_transient() {
 /// Bodies in any unit of length give the same number of dots at the same positions of the picture, and radii in the trajectory that other programs
 /// can draw.
 #[test]
-fn bodies_in_any_unit_of_length_are_drawn_alike() {
+fn pictures_of_bodies_do_not_depend_on_units() {
     let folder = tempfile::tempdir().unwrap();
     let drawn = |name: &str, unit: f64| {
         // Four bodies revolve on a cross: speeds and masses keep their periods the same in every unit.

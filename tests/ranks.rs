@@ -159,7 +159,7 @@ fn difference(alone: &Seen, together: &Seen) -> Option<String> {
 }
 
 #[test]
-fn bits_are_those_of_one_rank() {
+fn bits_do_not_depend_on_the_rank_count() {
     let mut compared = 0;
     for (number, scene) in SCENES.iter().enumerate() {
         for (search, precision) in SEARCHES.into_iter().zip(["f64", "mixed", "f32"]) {
@@ -188,7 +188,7 @@ fn bits_are_those_of_one_rank() {
 
 /// At step 207 a disc is on the rim of its cell to the last bit of f32: all ranks must place it in the same cell.
 #[test]
-fn a_disc_on_a_rim_is_in_one_cell() {
+fn disc_on_a_rim_is_in_one_cell() {
     let more = [
         "search.by=lattice",
         "machine.precision=f32",
@@ -206,7 +206,7 @@ fn a_disc_on_a_rim_is_in_one_cell() {
 
 /// A state can be resumed on another number of ranks.
 #[test]
-fn a_run_goes_on_with_on_another_number_of_ranks() {
+fn resumes_on_a_different_rank_count() {
     for (scene, search) in SCENES.iter().zip(SEARCHES.into_iter().cycle()).take(5) {
         let Ok(prepared) = scene.prepared(&[format!("search.by={search}")]) else { continue };
         let stop = AtomicBool::new(false);
@@ -231,7 +231,7 @@ fn a_run_goes_on_with_on_another_number_of_ranks() {
 
 /// Bodies are distributed by rows of all pairs.
 #[test]
-fn bodies_have_the_bits_of_one_rank() {
+fn bodies_on_ranks_have_the_same_bits() {
     for more in [
         &["particles.count=700", "run.steps=20"][..],
         &["particles.count=700", "run.steps=20", "machine.precision=mixed", "integrator.kind=hermite-4"],
@@ -260,7 +260,7 @@ fn too_many_ranks_are_refused() {
 /// Random scenes of both methods, including those that fail.
 #[test]
 #[ignore = "long: cargo test --release --test ranks -- --ignored --nocapture"]
-fn random_scenes_have_the_bits_of_one_rank() {
+fn random_scenes_on_ranks_have_the_same_bits() {
     let mut random = Stream::new(43, noise::Purpose::Test, 0);
     let (mut compared, mut failed) = (0, 0);
     while compared < 300 {
@@ -430,7 +430,7 @@ fn lines(folder: &Path) -> [Vec<String>; 2] {
 /// A rank that ends, or a damaged message of a rank, ends the run at any message, with an error that names the rank. Files written
 /// before are the beginning of a complete run's, and the run resumes from its checkpoint.
 #[test]
-fn a_lost_rank_ends_the_run_and_is_named() {
+fn lost_rank_ends_the_run_and_is_named() {
     for scene in WRITTEN {
         let (prepared, entry) = written(scene);
         let folder = tempfile::tempdir().unwrap();
@@ -472,7 +472,7 @@ fn a_lost_rank_ends_the_run_and_is_named() {
 
 /// A simulation that has lost a rank returns no numbers, and no state to resume from.
 #[test]
-fn nothing_is_seen_without_a_rank() {
+fn simulations_without_a_rank_return_nothing() {
     for scene in WRITTEN {
         let (prepared, _) = written(scene);
         as_processes(&prepared, &[Fault::None, Fault::Ends(20)], || {
@@ -493,7 +493,7 @@ fn nothing_is_seen_without_a_rank() {
 
 /// Several processes give the bits of one, also when they restart without lost particles.
 #[test]
-fn processes_have_the_bits_of_one() {
+fn processes_have_the_same_bits() {
     for scene in [&SCENES[1], &SCENES[5]] {
         let prepared = scene.prepared(&["search.by=neighbor-list".to_owned()]).unwrap();
         let alone = seen(&prepared, 1, scene.steps).unwrap();

@@ -61,7 +61,7 @@ fn discs(sides: [f64; 2], positions: &str, velocities: &str, dt: f64) -> String 
 /// The box is that of the scene, also if its sides are not multiples of a cell: every engine finds a disc beyond the same side, in
 /// the same step.
 #[test]
-fn a_thin_box_ends_where_the_scene_says() {
+fn thin_box_has_the_sides_of_the_scene() {
     let scene = discs([6.0, 0.9], "[[1.0, 0.45], [4.0, 0.45]]", "[[0.0, 0.5], [0.0, 0.0]]", 1e-2);
     let mut found = Vec::new();
     for (name, engine) in ENGINES {
@@ -79,7 +79,7 @@ fn a_thin_box_ends_where_the_scene_says() {
 
 /// Two discs so soft that they enter one cell of the lattice; lists handle them.
 #[test]
-fn discs_in_one_cell_meet_in_lists() {
+fn lists_handle_discs_in_one_cell() {
     let scene =
         discs([10.0, 10.0], "[[4.6323, 4.6323], [5.3677, 5.3677]]", "[[1.6, 1.6], [-1.6, -1.6]]", 1e-3);
     let run = |engine: &[&str]| {
@@ -111,7 +111,7 @@ fn discs_in_one_cell_meet_in_lists() {
 
 /// A warm gas whose discs sometimes share a cell conserves its energy with lists.
 #[test]
-fn a_hot_gas_keeps_its_energy_in_lists() {
+fn hot_gas_conserves_energy_with_lists() {
     let checked =
         checked("dense-gas", &[ENGINES[4].1, &["particles.count=100", "particles.temperature=0.3"]]);
     let mut method = assemble(&checked).unwrap();
@@ -151,7 +151,7 @@ fn single_precision_loses_no_motion() {
 
 /// Single and double precision agree across every periodic side, in either direction.
 #[test]
-fn single_precision_crosses_sides_as_double_does() {
+fn precisions_agree_across_periodic_sides() {
     for (velocity, (name, engine)) in
         ["[[-0.9, -0.7]]", "[[1.1, 0.8]]"].into_iter().flat_map(|v| ENGINES.map(|e| (v, e)))
     {
@@ -173,7 +173,7 @@ fn single_precision_crosses_sides_as_double_does() {
 
 /// Nearly empty boxes have wide sectors in double precision only.
 #[test]
-fn collisions_in_empty_boxes_keep_their_energy_in_single_precision() {
+fn single_precision_conserves_energy_in_empty_boxes() {
     for (name, engine) in &ENGINES[2..] {
         // Chained lists enter discs in a lattice, whose cells are all cleared.
         let (length, x) = if *name == "chained lists" { (200.0, 90.3) } else { (20_000.0, 9000.3) };
@@ -194,7 +194,7 @@ fn collisions_in_empty_boxes_keep_their_energy_in_single_precision() {
 }
 
 #[test]
-fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
+fn absolute_single_precision_is_refused_far_away() {
     let absolute = ["machine.precision=f32", "machine.coordinates=absolute"];
     let scene = discs([1000.0, 4.0], "[[700.0, 2.0]]", "[[0.01, 0.0]]", 0.005);
     let said = refused(&scene, &absolute);
@@ -210,7 +210,7 @@ fn single_precision_from_the_origin_is_refused_where_it_loses_motion() {
 
 /// Dissipation is counted in every contact and step: rare rows change nothing, and all engines agree.
 #[test]
-fn dissipation_is_counted_and_the_balance_closes() {
+fn dissipation_balances_the_energy() {
     let run = |engine: &[&str], steps: u64| -> (Totals, f64) {
         let more =
             ["particles.count=100", "law.normal_damping=0.3", "law.shear_damping=0.2", "law.friction=0.4"];
@@ -274,7 +274,7 @@ fn work_of_gravity_and_walls_is_counted() {
 
 /// A correction that moves a disc across a periodic side does not count as a fall by a whole period: energy is balanced in that step.
 #[test]
-fn corrections_across_a_side_are_no_work() {
+fn corrections_across_sides_do_no_work() {
     const STEP: u64 = 12;
     let seen = |engine: &[&str], origin: f64| {
         let scene = discs([12.0, 9.0], "[[4.0, 4.5], [5.02, 4.5]]", "[[1.5, 0.0], [0.5, 0.0]]", 0.01)
@@ -303,7 +303,7 @@ fn corrections_across_a_side_are_no_work() {
 
 /// A grain that falls through a periodic side is counted in that step, not when a search next wraps its position.
 #[test]
-fn the_balance_has_no_jump_where_a_grain_crosses_a_side() {
+fn energy_balance_is_continuous_across_sides() {
     let quantities = METHODS[0].quantities;
     let balance = quantities.iter().position(|quantity| quantity.name == "balance_error").unwrap();
     for search in ["lattice", "neighbor-list", "sectors"] {
@@ -321,7 +321,7 @@ fn the_balance_has_no_jump_where_a_grain_crosses_a_side() {
 
 /// A disc that leaves through an open side and returns is detected in the same step, also with lists.
 #[test]
-fn a_disc_that_returns_has_left() {
+fn disc_leaving_for_a_moment_is_detected() {
     let scene = discs([20.0, 20.0], "[[10.0, 19.9], [10.0, 5.0]]", "[[0.0, 1.0], [0.1, 0.0]]", 0.005)
         .replace(
             "sides = [20.0, 20.0]",
@@ -344,7 +344,7 @@ fn a_disc_that_returns_has_left() {
 
 /// A disc fast enough to pass through others is detected in that step, or counted.
 #[test]
-fn steps_that_are_too_long_are_caught() {
+fn too_long_steps_are_detected() {
     let scene = discs([12.0, 9.0], "[[1.0, 1.0], [7.0, 5.0]]", "[[0.1, 0.0], [0.0, 0.1]]", 0.01)
         .replace("periodic", "# periodic")
         .replace("sides = [12.0, 9.0]", "sides = [12.0, 9.0]\ngravity = [40.0, 0.0]");
@@ -364,7 +364,7 @@ fn steps_that_are_too_long_are_caught() {
 }
 
 #[test]
-fn discs_that_are_too_fast_at_the_start_are_refused() {
+fn too_fast_discs_at_the_start_are_refused() {
     // Five diameters a step.
     let scene = discs([100.0, 9.0], "[[10.0, 4.0], [30.0, 4.0]]", "[[500.0, 0.0], [0.0, 0.0]]", 0.01);
     let said = refused(&scene, &["law.stiffness=1e12"]);
@@ -410,7 +410,7 @@ fn positions_too_coarse_for_their_distance_are_refused() {
 
 /// Lists in narrow boxes, and skins too large for a box, are refused when a scene is checked.
 #[test]
-fn boxes_without_room_for_lists_are_refused_when_checked() {
+fn boxes_too_small_for_lists_are_refused() {
     let lists = ["search.by=neighbor-list", "machine.engine=fast"];
     let mut method = assemble(&checked("two-discs", &[&lists, &["search.skin=7.4"]])).unwrap();
     advance(&mut method, 50);
@@ -433,7 +433,7 @@ fn boxes_without_room_for_lists_are_refused_when_checked() {
 
 /// Unused velocities of wall discs in a start file are reported.
 #[test]
-fn velocities_of_wall_discs_are_not_dropped_in_silence() {
+fn unused_wall_disc_velocities_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("start.xyz");
     let row = |species: &str, x: f64, id: u32, v: f64| {

@@ -62,7 +62,7 @@ fn folder_and_bits() -> (tempfile::TempDir, PathBuf, [Vec<u8>; 5]) {
 
 /// The final state is a frame even if none is due, only once if one is, and is removed when the run resumes.
 #[test]
-fn the_last_state_is_a_frame_once() {
+fn final_state_is_written_once() {
     let folder = tempfile::tempdir().unwrap();
     let steps = |path: &Path| -> Vec<u64> {
         let text = fs::read_to_string(path.join("trajectory.xyz")).unwrap();
@@ -102,7 +102,7 @@ fn the_last_state_is_a_frame_once() {
 
 /// A start file with other masses makes another run.
 #[test]
-fn the_contents_of_the_start_file_belong_to_a_run() {
+fn start_file_contents_belong_to_a_run() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, start, out) =
         (folder.path().join("s.toml"), folder.path().join("two.xyz"), folder.path().join("run"));
@@ -141,7 +141,7 @@ fn forge(folder: &Path, change: impl FnOnce(&mut Checkpoint)) {
 
 /// A version that promises the same bits resumes with a note; any other is refused unless allowed.
 #[test]
-fn another_version_is_said_or_refused() {
+fn other_versions_are_noted_or_refused() {
     let (_folder, path, whole) = folder_and_bits();
     succeed(&run(&path, 60, &[]));
     forge(&path, |checkpoint| drop(checkpoint.origin.insert("commit".to_owned(), "0123456789ab".to_owned())));
@@ -163,7 +163,7 @@ fn another_version_is_said_or_refused() {
 
 /// Fewer steps than are already done.
 #[test]
-fn fewer_steps_than_done_are_refused() {
+fn resuming_to_fewer_steps_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run");
     succeed(&run(&path, 60, &[]));
@@ -201,7 +201,7 @@ fn damaged_files_are_refused() {
 
 /// Data after the checkpoint may be torn anywhere, also within the first words of a dump's frame.
 #[test]
-fn what_is_torn_after_the_checkpoint_is_mended() {
+fn torn_data_after_the_checkpoint_are_repaired() {
     let (_folder, path, whole) = folder_and_bits();
     succeed(&run(&path, 80, &[]));
     let kept = bits(&path);
@@ -219,7 +219,7 @@ fn what_is_torn_after_the_checkpoint_is_mended() {
 
 /// The older checkpoint is used if the newest is missing; this is reported at once and at the end.
 #[test]
-fn a_fallback_to_the_older_checkpoint_is_said() {
+fn fallback_to_the_older_checkpoint_is_reported() {
     let (_folder, path, whole) = folder_and_bits();
     succeed(&run(&path, 60, &[]));
     fs::remove_file(path.join("run.checkpoint")).unwrap();
@@ -232,7 +232,7 @@ fn a_fallback_to_the_older_checkpoint_is_said() {
 
 /// `--resume` starts a run in an empty folder, and starts again if there is no checkpoint yet; another scene is still refused.
 #[test]
-fn resuming_before_the_first_checkpoint_begins() {
+fn resuming_without_a_checkpoint_starts_the_run() {
     let (_folder, path, whole) = folder_and_bits();
     succeed(&run(&path, 100, &["--resume"]));
     assert!(bits(&path) == whole && notes(&path).is_empty());
@@ -253,7 +253,7 @@ fn resuming_before_the_first_checkpoint_begins() {
 /// Files removed by others during a run are noticed at the next checkpoint, not only at the end.
 #[cfg(unix)]
 #[test]
-fn files_removed_meanwhile_are_missed() {
+fn files_removed_during_a_run_are_noticed() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["thermo.csv", "trajectory.xyz", "dump.lammpstrj", "scene.toml", "run.files", "run.lock"] {
         let path = folder.path().join(name);
@@ -269,7 +269,7 @@ fn files_removed_meanwhile_are_missed() {
 
 /// Choices made at the start of a run are kept, even if another choice would be made now.
 #[test]
-fn a_choice_stays() {
+fn choices_are_kept_on_resumption() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run");
     succeed(&run(&path, 20, &["--set", "search.by=sectors", "--set", "machine.engine=fast"]));
@@ -295,7 +295,7 @@ fn write_start(folder: &Path) {
 
 /// A folder moved together with its start file resumes: the file is identified by its contents.
 #[test]
-fn a_run_is_moved_with_its_start_file() {
+fn runs_can_be_moved_with_their_start_file() {
     let folder = tempfile::tempdir().unwrap();
     let [scratch, home, copy] = ["scratch", "home", "copy"].map(|name| folder.path().join(name));
     let stripmine = |at: &Path, arguments: &[&str]| {

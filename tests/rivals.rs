@@ -8,7 +8,7 @@ fn run(program: &str, folder: &Path, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn committed_results_are_refused_to_a_changed_checkout() {
+fn changed_checkout_cannot_overwrite_committed_results() {
     let checkout = tempfile::tempdir().unwrap();
     let at = |name: &str| checkout.path().join(name);
     for folder in ["src", "tests/rivals", "src/study/rivals/measured"] {

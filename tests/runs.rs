@@ -42,7 +42,7 @@ const BITS: [&str; 3] = ["thermo.csv", "trajectory.xyz", "dump.lammpstrj"];
 
 /// A run has the same bytes for any number of threads and every execution.
 #[test]
-fn a_run_is_the_same_for_threads_and_executions() {
+fn runs_do_not_depend_on_threads_or_execution() {
     let folder = tempfile::tempdir().unwrap();
     let with = |name: &str, more: &[&str]| -> PathBuf {
         let path = folder.path().join(name);
@@ -68,7 +68,7 @@ fn a_run_is_the_same_for_threads_and_executions() {
 
 /// A run with the fast engine has the same bytes for any number of threads, any instruction set, and after a resumption.
 #[test]
-fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
+fn fast_runs_keep_their_bits_and_resume() {
     let folder = tempfile::tempdir().unwrap();
     let with = |name: &str, more: &[&str]| -> PathBuf {
         let path = folder.path().join(name);
@@ -97,7 +97,7 @@ fn a_fast_run_is_the_same_for_threads_and_instructions_and_goes_on() {
 /// An interrupted or terminated run writes a checkpoint, exits with 130, and resumes with the same bits.
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_goes_on() {
+fn interrupted_run_resumes() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, stopped) = (folder.path().join("whole"), folder.path().join("stopped"));
     let steps = ["--set", "run.steps=6000"];
@@ -127,7 +127,7 @@ fn an_interrupted_run_goes_on() {
 
 /// A folder with a run is not changed unless asked; another scene is not resumed.
 #[test]
-fn a_folder_with_a_run_is_respected() {
+fn folders_with_a_run_are_not_changed() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     let steps = ["--set", "run.steps=20"];
@@ -147,7 +147,7 @@ fn a_folder_with_a_run_is_respected() {
 
 /// A damaged checkpoint is refused with exit code 6; the older one is kept and can be used.
 #[test]
-fn a_corrupt_checkpoint_is_refused_and_the_older_one_kept() {
+fn corrupt_checkpoint_is_refused_and_older_kept() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     let steps = ["--set", "run.steps=400"];
@@ -189,7 +189,7 @@ fn pipe_as_printed_is_caught_and_named() {
 
 /// Keys of `bench --json` that outside programs read.
 #[test]
-fn bench_prints_what_it_promises() {
+fn bench_prints_the_documented_keys() {
     let programs = &["predict", "index", "forces", "correct"][..];
     for (what, execution, integrator, phases) in [
         ("lattice", "fast", "velocity-verlet", &["correct_predict", "index", "forces"][..]),
@@ -254,7 +254,7 @@ fn bench_prints_what_it_promises() {
 
 /// No method writes checkpoints more often than the default wall-clock interval, unless its scene asks for it.
 #[test]
-fn checkpoints_are_written_by_the_wall_clock() {
+fn default_checkpoints_follow_the_wall_clock() {
     for preset in METHODS.iter().flat_map(|method| method.vocabulary.presets) {
         let checkpoints = |more: &[String]| load(preset.name, more, METHODS).unwrap().0.schedule.checkpoints;
         let by_default = checkpoints(&[]);
@@ -270,7 +270,7 @@ fn checkpoints_are_written_by_the_wall_clock() {
 
 /// All seeds of a run use one scene, read once with its start file: both files may be removed while they run.
 #[test]
-fn seeds_are_of_the_scene_of_the_beginning() {
+fn seeds_use_the_scene_as_first_read() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let inside = |arguments: &[&str]| {

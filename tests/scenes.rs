@@ -24,7 +24,7 @@ fn bad_scenes() -> Vec<PathBuf> {
 /// Every bad scene is refused with exit code 3, and its error has the location and words of the leading comments: `# expect:
 /// line L column C`, `# expect: words`; `# set: section.key=value` is an override to check it with.
 #[test]
-fn bad_scenes_are_refused_as_they_say() {
+fn bad_scenes_are_refused_with_expected_errors() {
     let files = bad_scenes();
     assert!(files.len() >= 42);
     let mut wrong = Vec::new();
@@ -87,7 +87,7 @@ fn presets_pass_the_check() {
 
 /// The pipe has the numbers of the table "A complete set that was tried".
 #[test]
-fn the_pipe_is_built_as_tried() {
+fn pipe_has_the_tried_numbers() {
     for (name, grains, walls) in [("pipe", 596, 600), ("pipe-small", 238, 240)] {
         let checked = Scene::load(name).unwrap().check().unwrap();
         let discs = &checked.particles;
@@ -117,7 +117,7 @@ fn the_pipe_is_built_as_tried() {
 
 /// BP93's cells, d = R_max, are 736 × 8.
 #[test]
-fn the_cells_of_the_source_can_be_asked_for() {
+fn cells_of_the_paper_can_be_set() {
     let scene = Scene::load("pipe").unwrap().with_overrides(&["search.cell_edge=0.011"]).unwrap();
     let geometry = scene.check().unwrap().geometry;
     assert_eq!((geometry.shape.columns(), geometry.shape.rows()), (736, 8));
@@ -166,7 +166,7 @@ const NOT_SHOWN: [(&str, &str); 35] = [
 
 /// A key that no scene of ours sets has a stated purpose, and no other key is listed.
 #[test]
-fn every_key_is_shown_or_has_a_reason() {
+fn every_key_is_shown_or_explained() {
     let gallery = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gallery")).unwrap();
     let gallery = gallery.map(|file| file.unwrap().path());
     let gallery = gallery.filter(|file| file.extension().is_some_and(|extension| extension == "toml"));
@@ -189,7 +189,7 @@ fn every_key_is_shown_or_has_a_reason() {
 
 /// A scene written by `to_toml` is read back as an equal one, for every preset and for scenes that use every other key.
 #[test]
-fn scenes_survive_being_written() {
+fn written_scenes_are_read_back() {
     let two = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad/two.xyz");
     let file = format!("particles.file=\"{}\"", two.display());
     let variants: Vec<(&str, Vec<&str>)> = vec![
@@ -235,7 +235,7 @@ fn scenes_survive_being_written() {
 
 /// An override replaces a value, and drops values that it excludes or makes meaningless.
 #[test]
-fn overrides_take_the_place_of_rivals() {
+fn overrides_replace_conflicting_values() {
     let load = |name: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         Document::load(name, &overrides).map(|document| document.scene)
@@ -261,7 +261,7 @@ fn overrides_take_the_place_of_rivals() {
 
 /// The path of a start file is relative to its scene.
 #[test]
-fn start_files_are_read_beside_the_scene() {
+fn start_file_paths_are_relative_to_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     let bad = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/bad");
     std::fs::copy(bad.join("two.xyz"), folder.path().join("two.xyz")).unwrap();
@@ -276,7 +276,7 @@ fn start_files_are_read_beside_the_scene() {
 
 /// Ids from 0 are raised by one, with a warning; ids from 1 cause none.
 #[test]
-fn ids_that_are_raised_are_said() {
+fn raised_ids_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let (start, path) = (folder.path().join("start.xyz"), folder.path().join("scene.toml"));
     let head = "Lattice=\"10.0 0 0 0 8.0 0 0 0 1\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
@@ -371,7 +371,7 @@ fn extreme_numbers_never_panic() {
 
 /// Scenes that do not exist, are not text, or are not readable.
 #[test]
-fn scenes_that_cannot_be_read_are_named() {
+fn unreadable_scenes_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, b"format = 2\nmethod.kind = \"lattice-md\"\nunits = \"\xff\xfe\"\n").unwrap();
@@ -393,7 +393,7 @@ fn scenes_that_cannot_be_read_are_named() {
 
 /// The verbs of scenes print text and data.
 #[test]
-fn the_verbs_print_presets_keys_and_checks() {
+fn scene_verbs_print_presets_keys_and_checks() {
     let json = |arguments: &[&str]| -> serde_json::Value {
         let output = stripmine(arguments);
         serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{arguments:?}"))
@@ -448,7 +448,7 @@ fn the_verbs_print_presets_keys_and_checks() {
 
 /// Defaults follow from given values: the cut of radii from their spread, wall discs from the grains.
 #[test]
-fn values_that_are_not_given_follow_from_others() {
+fn defaults_follow_from_given_values() {
     let scene = |spread: f64| {
         let text = format!(
             "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [30.0, 20.0]\n\
@@ -471,7 +471,7 @@ fn values_that_are_not_given_follow_from_others() {
 
 /// Scenes that a run writes are valid scenes, for every preset of every method.
 #[test]
-fn resolved_scenes_are_scenes() {
+fn resolved_scenes_are_valid_scenes() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("again.toml");
     let file = file.to_str().unwrap();
@@ -487,7 +487,7 @@ fn resolved_scenes_are_scenes() {
 /// A warning is given if a grain flies, or falls, out of an open side before the end of the run. By hand: from x = 3 at speed 1 to 12, and from y = 4
 /// by gt²/2 to 0.
 #[test]
-fn open_sides_that_hold_nothing_back_are_warned_of() {
+fn grains_leaving_open_sides_cause_a_warning() {
     let strip = "domain.periodic=[true, false]";
     let falls = "domain.gravity=[0.0, -0.1]";
     for (time, more, is_warned) in [
@@ -514,7 +514,7 @@ fn open_sides_that_hold_nothing_back_are_warned_of() {
 
 /// Facts keep their precision in any unit of length: discs of 1.25 nm in a box of 40 nm × 30 nm, in metres.
 #[test]
-fn facts_keep_their_digits_in_any_unit_of_length() {
+fn facts_keep_precision_in_any_unit() {
     let small = [
         "particles.generate=random",
         "particles.count=4",

@@ -43,7 +43,7 @@ fn said(output: &Output) -> String {
 
 /// A run that is interrupted while it places, checks or starts ends before it has written anything.
 #[test]
-fn a_run_that_only_starts_ends_without_a_trace() {
+fn interrupted_starts_leave_no_files() {
     let folder = tempfile::tempdir().unwrap();
     for (signal, moment) in [("-INT", 100), ("-TERM", 100), ("-INT", 700)] {
         let many = ["--set", "particles.count=2000000"];

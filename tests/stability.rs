@@ -59,7 +59,7 @@ thermo_every = 10
 }
 
 #[test]
-fn a_scene_that_is_stable_everywhere_shows_no_failure() {
+fn stable_scenes_show_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     let scene = apart(folder.path());
     let data = succeeds(&map(scene.to_str().unwrap(), &folder.path().join("map"), &[]));
@@ -76,7 +76,7 @@ fn a_scene_that_is_stable_everywhere_shows_no_failure() {
 /// needs
 /// more than a single contact to amplify errors.
 #[test]
-fn what_works_ends_where_theory_says() {
+fn stability_edge_agrees_with_theory() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("map");
     let over = ["--over", "damping", "--set", "run.time=3.2", "--set", "law.friction=0"];
@@ -100,7 +100,7 @@ fn what_works_ends_where_theory_says() {
 }
 
 #[test]
-fn maps_that_cannot_be_are_refused_with_what_may_be() {
+fn impossible_maps_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scene = apart(folder.path());
     let refused = |more: &[&str], code: i32, words: &[&str]| {
@@ -129,7 +129,7 @@ fn maps_that_cannot_be_are_refused_with_what_may_be() {
 
 /// Without `--over` the first parameter is varied for which the scene has a value; a method without steps is refused, as the help states.
 #[test]
-fn every_method_with_steps_has_a_map_without_an_axis() {
+fn every_method_with_steps_has_a_map() {
     let folder = tempfile::tempdir().unwrap();
     let small = ["particles.count=64", "domain.sides=[10.0, 10.0]", "run.time=1"];
     let small: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();
@@ -150,7 +150,7 @@ fn every_method_with_steps_has_a_map_without_an_axis() {
 
 /// Discs so soft that they pass through each other at any step.
 #[test]
-fn a_scene_that_fails_at_every_step_says_what_was_tried() {
+fn scenes_that_always_fail_report_the_trials() {
     let folder = tempfile::tempdir().unwrap();
     let output = map("two-discs", &folder.path().join("map"), &["--range", "1e-6", "1e-5"]);
     let said = said(&output);
@@ -172,7 +172,7 @@ fn checks(summary: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn a_run_says_what_is_wrong_with_it_and_nothing_of_a_good_one() {
+fn runs_report_failed_checks_only() {
     let folder = tempfile::tempdir().unwrap();
     let of = |scene: &str, more: &[&str]| run(scene, folder.path(), more);
     assert_eq!(checks(&of("two-discs", &[])), [] as [&str; 0]);
@@ -198,7 +198,7 @@ fn a_run_says_what_is_wrong_with_it_and_nothing_of_a_good_one() {
 
 /// Checks are part of the checkpoint: a resumed run reports the same as a run in one piece.
 #[test]
-fn a_resumed_run_says_the_same() {
+fn resumed_runs_report_the_same_checks() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = |out: &Path, steps: &str, more: &[&str]| {
         let steps = format!("run.steps={steps}");
@@ -230,7 +230,7 @@ fn a_resumed_run_says_the_same() {
 }
 
 #[test]
-fn what_is_to_be_expected_is_said_before_a_run() {
+fn scene_check_forecasts_limits_and_errors() {
     let facts = succeeds(&stripmine(&["scene", "check", "pipe-small", "--json"]));
     let limits = facts["step_limits"].as_array().unwrap();
     let share =

@@ -34,7 +34,7 @@ fn pressed(folder: &Path) -> std::path::PathBuf {
 
 #[cfg(unix)]
 #[test]
-fn a_study_that_was_interrupted_goes_on_and_another_scenes_is_refused() {
+fn interrupted_study_resumes_only_with_its_scene() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, out) = (pressed(folder.path()), folder.path().join("study"));
     let journal = out.join("journal.jsonl");
@@ -66,7 +66,7 @@ fn a_study_that_was_interrupted_goes_on_and_another_scenes_is_refused() {
 }
 
 #[test]
-fn scenes_without_an_answer_are_refused_with_what_was_tried() {
+fn studies_without_result_report_their_trials() {
     let folder = tempfile::tempdir().unwrap();
     let scene = pressed(folder.path());
     let refused = |more: &[&str], code: i32, words: &[&str]| {
@@ -90,7 +90,7 @@ fn scenes_without_an_answer_are_refused_with_what_was_tried() {
 
 /// Trajectories of shaken grains diverge at once: the command names a chart that can be made.
 #[test]
-fn a_scene_without_comparable_positions_is_refused_with_what_to_ask() {
+fn chaotic_scenes_are_referred_to_accuracy_charts() {
     let folder = tempfile::tempdir().unwrap();
     let refused = study(Path::new("shaken-box"), &folder.path().join("study"), &["--budget", "5"]);
     let said = said(&refused);

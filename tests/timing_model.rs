@@ -21,7 +21,7 @@ default = { value = 20, provenance = "assumed", note = "a test" }
 "#;
 
 #[test]
-fn a_machine_file_of_ones_own_is_asked_and_every_clock_answers() {
+fn user_machine_files_are_used_by_every_clock() {
     let folder = tempfile::tempdir().unwrap();
     let path = file(&folder, MACHINE);
     let out = stripmine(&["table", "--ladder", "--machine", &path, "--json"]).success();
@@ -32,7 +32,7 @@ fn a_machine_file_of_ones_own_is_asked_and_every_clock_answers() {
 }
 
 #[test]
-fn bad_machine_files_are_named_with_line_and_column() {
+fn bad_machine_files_are_reported_with_their_location() {
     let folder = tempfile::tempdir().unwrap();
     for (old, new, said) in [
         ("value = 20", "value = -20", "mine.toml:6:21: `start_up.default` is -20"),
@@ -48,7 +48,7 @@ fn bad_machine_files_are_named_with_line_and_column() {
 }
 
 #[test]
-fn all_wrong_values_of_a_machine_file_are_said_at_once() {
+fn all_wrong_values_of_machine_files_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let text =
         MACHINE.replace("value = 20,", "value = -20,").replace("2026", "2026.5").replace("\"Mine\"", "7");
@@ -65,13 +65,13 @@ fn all_wrong_values_of_a_machine_file_are_said_at_once() {
 }
 
 #[test]
-fn a_machine_that_is_not_there_is_answered_with_those_that_are() {
+fn unknown_machine_lists_the_known_ones() {
     stripmine(&["table", "--machine", "eniac"]).code(2);
     stripmine(&["table", "--machine", "eniac.toml"]).code(5);
 }
 
 #[test]
-fn beyond_the_calibrated_range_nothing_is_predicted() {
+fn no_prediction_beyond_the_calibrated_range() {
     for (arguments, said) in [
         (["--particles", "5000000"], "calibrated range of 8 to 4000000"),
         (["--particles", "200000"], "200000 discs are outside the calibrated range of 60 to 32000"),
@@ -84,7 +84,7 @@ fn beyond_the_calibrated_range_nothing_is_predicted() {
 }
 
 #[test]
-fn the_shipped_host_model_is_used_and_said_so_and_bad_host_files_are_refused() {
+fn shipped_host_model_is_named_when_used() {
     let out = stripmine(&["validate-model", "--particles", "5000000"]).code(4);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("shipped with the program"));
     let folder = tempfile::tempdir().unwrap();

@@ -165,7 +165,7 @@ fn error_of<P: Precision, const RATE: bool, const SUMS: usize>(
 }
 
 #[test]
-fn sums_are_those_of_all_pairs() {
+fn sums_match_the_pair_formula() {
     for count in [2, 3, 16, 17, 100, 301] {
         for softening in [0.0, 0.05] {
             for set in InstructionSet::available() {
@@ -203,7 +203,7 @@ fn raw_estimates_are_coarse() {
 
 /// Single precision resolves distances between bodies as well a thousand lengths from the origin as near it.
 #[test]
-fn forces_in_single_precision_do_not_depend_on_the_origin() {
+fn single_precision_forces_ignore_the_origin() {
     for arithmetic in [Arithmetic::Exact, Arithmetic::Estimated] {
         for set in InstructionSet::available() {
             let of = |by| System::<f32>::random(65, 9).moved(by);
@@ -262,7 +262,7 @@ fn bits_depend_on_the_bodies_alone() {
 
 /// The forces of every pair are opposite: the sum over all bodies is rounding error.
 #[test]
-fn no_momentum_comes_from_nowhere() {
+fn total_momentum_is_conserved() {
     let system = System::<f64>::random(1000, 3);
     for arithmetic in [Arithmetic::Exact, Arithmetic::Estimated] {
         let (forces, _) = system.swept::<false, 3>(0.01, arithmetic, InstructionSet::best());
@@ -274,7 +274,7 @@ fn no_momentum_comes_from_nowhere() {
 }
 
 #[test]
-fn columns_that_are_too_short_are_refused() {
+fn too_short_columns_are_rejected() {
     let (short, zeros) = (vec![0.0_f64; 16], vec![0.0_f64; 32]);
     let law = Gravity::<true> { softening: 0.1 };
     let mut sums: [Vec<f64>; 6] = std::array::from_fn(|_| zeros.clone());

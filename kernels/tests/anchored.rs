@@ -40,7 +40,7 @@ fn entered(start: &Discs, shape: LatticeShape, frame: Frame, how: (Execution, In
 }
 
 #[test]
-fn discs_are_found_from_the_cells_in_which_they_were() {
+fn discs_are_indexed_from_their_last_cells() {
     // A box far from the origin, where single precision could not distinguish cells.
     let frame = Frame { origin: [-3e7, 5e8], edge: [0.7, 0.9] };
     for (periodic, half_width) in [([true, true], 2), ([true, false], 3), ([false, false], 2)] {

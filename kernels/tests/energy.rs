@@ -127,7 +127,7 @@ fn by_lists<L: Law<2>>(start: &System<f64, f64>, case: &Case, law: &L) -> [f64; 
 }
 
 #[test]
-fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
+fn all_sweeps_give_power_energy_and_virial() {
     let mut fixed_pairs = 0;
     for (seed, periodic) in [[true, true], [false, true], [false, false]].into_iter().enumerate() {
         let case = Case { periodic, seed: seed as u64, fill: 0.6, ..Case::new(23, 17) };
@@ -163,7 +163,7 @@ fn every_sweep_gives_power_energy_and_virial_of_all_pairs() {
 
 /// Energy is a section of its own on the tape; without requests, the kernel contains no observation.
 #[test]
-fn what_is_not_asked_for_is_not_recorded() {
+fn unrequested_observations_are_not_recorded() {
     let case = Case::new(9, 7);
     let system = System::<f64, f64>::random(&case);
     let contact = Contact { arm: ContactArm::Overlap, ..CONTACT };

@@ -72,7 +72,7 @@ fn agree_for_every_law(case: &Case) {
 }
 
 #[test]
-fn fast_forces_are_those_of_the_faithful_sweep_on_lattices_of_every_kind() {
+fn fast_forces_match_on_every_lattice() {
     for (half_width, columns, rows) in [(2, 13, 9), (3, 11, 14), (2, 70, 101), (2, 5, 5), (3, 16, 33)] {
         for periodic in [[true, true], [false, false], [true, false], [false, true]] {
             let (short, least) = (columns.min(rows), 2 * half_width + 1);
@@ -90,7 +90,7 @@ fn fast_forces_are_those_of_the_faithful_sweep_on_lattices_of_every_kind() {
 }
 
 #[test]
-fn fast_forces_are_those_of_the_faithful_sweep_when_full_sparse_or_empty() {
+fn fast_forces_match_full_sparse_or_empty() {
     for fill in [1.0, 0.05, 0.01, 0.0] {
         agree_for_every_law(&Case { fill, ..Case::new(40, 67) });
     }
@@ -101,7 +101,7 @@ fn fast_forces_are_those_of_the_faithful_sweep_when_full_sparse_or_empty() {
 
 /// Action and reaction: the sum of all forces vanishes up to rounding.
 #[test]
-fn forces_add_up_to_nothing() {
+fn fast_forces_sum_to_zero() {
     let case = Case { seed: 9, ..Case::new(60, 75) };
     let system = System::<f64, f64>::random(&case);
     let order: Vec<u32> = (0..system.discs as u32).collect();
@@ -114,7 +114,7 @@ fn forces_add_up_to_nothing() {
 }
 
 #[test]
-fn an_instruction_set_that_is_not_there_is_refused() {
+fn absent_instruction_sets_are_rejected() {
     let system = System::<f64, f64>::random(&Case::new(9, 9));
     let order: Vec<u32> = (0..system.discs as u32).collect();
     for &set in InstructionSet::ALL {
@@ -128,7 +128,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn fast_forces_are_those_of_the_faithful_sweep(
+    fn fast_forces_match_random_lattices(
         columns in 7usize..70,
         rows in 7usize..80,
         half_width in 2u32..4,

@@ -152,7 +152,7 @@ fn of_order(order: f64, slopes: [f64; 2]) {
 
 /// Coefficients of Allen & Tildesley's table. Other first coefficients would pass the tests of order and stability.
 #[test]
-fn coefficients_are_those_of_the_table() {
+fn coefficients_match_the_table() {
     for (values, first, first_of_velocities, rest) in [
         (4, (1, 6), (1, 6), vec![(5, 6), (1, 1), (1, 3)]),
         (5, (19, 120), (19, 90), vec![(3, 4), (1, 1), (1, 2), (1, 12)]),
@@ -171,7 +171,7 @@ fn coefficients_are_those_of_the_table() {
 
 /// On harmonic oscillators with exact initial derivatives, the schemes of 4, 5, 6 values are of order 3, 4, 5.
 #[test]
-fn four_five_and_six_values_are_of_order_three_four_and_five() {
+fn orders_are_one_below_the_values() {
     of_order(3.0, slopes::<4>(Acceleration::OfPositions, false, true));
     of_order(4.0, slopes::<5>(Acceleration::OfPositions, false, true));
     of_order(5.0, slopes::<6>(Acceleration::OfPositions, false, true));
@@ -179,7 +179,7 @@ fn four_five_and_six_values_are_of_order_three_four_and_five() {
 
 /// On damped oscillators, both first coefficients give these orders: the one for velocity-dependent forces and the other.
 #[test]
-fn either_first_coefficient_has_the_same_order_with_damping() {
+fn both_first_coefficients_keep_the_damped_order() {
     for acceleration in [Acceleration::OfVelocities, Acceleration::OfPositions] {
         of_order(3.0, slopes::<4>(acceleration, true, true));
         of_order(4.0, slopes::<5>(acceleration, true, true));
@@ -221,7 +221,7 @@ fn stable_below<const VALUES: usize>(limit: f64) {
 
 /// Pure drag is stable for γ dt below 0.55, 0.31, 0.17 with 4, 5, 6 values.
 #[test]
-fn pure_drag_is_stable_below_the_stated_limits_only() {
+fn pure_drag_is_stable_below_stated_limits() {
     stable_below::<4>(0.55);
     stable_below::<5>(0.31);
     stable_below::<6>(0.17);

@@ -68,7 +68,7 @@ fn executions_agree_on_one_cell() {
 }
 
 #[test]
-fn executions_agree_with_the_wider_mask_and_the_other_options_of_the_law() {
+fn executions_agree_with_wider_masks_and_options() {
     let contact = stripmine_kernels::law::granular::Contact {
         cohesionless: false,
         arm: ContactArm::Overlap,

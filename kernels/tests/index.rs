@@ -136,7 +136,7 @@ fn index_agrees<S: Precision>(case: &Case) {
 
 /// Cells, Index, strays and conflicts equal those of plain arithmetic, in both state precisions.
 #[test]
-fn the_index_is_that_of_plain_arithmetic() {
+fn the_index_matches_plain_arithmetic() {
     for periodic in [[true, true], [false, false], [true, false], [false, true]] {
         for (half_width, seed) in [(2, 1), (2, 2), (3, 3)] {
             let case = Case { periodic, half_width, seed, ..Case::new(13, 9) };
@@ -149,7 +149,7 @@ fn the_index_is_that_of_plain_arithmetic() {
 /// The lattice's copy of a position is the disc's position, absolute or relative to the centre of its cell, and never beyond the
 /// cell.
 #[test]
-fn coordinates_on_the_lattice_are_the_places_of_the_discs() {
+fn lattice_coordinates_match_disc_positions() {
     for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
         let case = Case { coordinates, ..Case::new(13, 9) };
         let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
@@ -230,7 +230,7 @@ fn discs_that_share_a_cell_are_counted() {
 /// With exactly representable borders, a disc on a border belongs to the cell to its right or above. On the far side it belongs
 /// to the last cell of a closed lattice and to the first of a periodic one.
 #[test]
-fn a_disc_on_a_border_belongs_to_the_cell_behind_it() {
+fn border_discs_belong_to_the_upper_cell() {
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
     for periodic in [[true, true], [false, false]] {
         for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
@@ -262,7 +262,7 @@ fn a_disc_on_a_border_belongs_to_the_cell_behind_it() {
 
 /// On borders that no double represents, the disc is in one of the two cells, and its position is unchanged.
 #[test]
-fn a_disc_on_a_rounded_border_is_in_one_of_the_two_cells_and_where_it_was() {
+fn rounded_borders_assign_a_neighbouring_cell() {
     let frame = Frame { origin: [-3.1, 2.7], edge: [1.1, 0.7] };
     let case = Case::new(23, 19);
     for column in 1..23 {
@@ -281,7 +281,7 @@ fn a_disc_on_a_rounded_border_is_in_one_of_the_two_cells_and_where_it_was() {
 
 /// A disc so slightly below a periodic side that adding a period rounds to exactly the far side stays inside.
 #[test]
-fn a_coordinate_that_wraps_by_rounding_to_exactly_the_period_stays_inside() {
+fn positions_rounded_to_the_period_stay_inside() {
     let frame = Frame { origin: [0.0, 0.0], edge: [1.5, 1.25] };
     let case = Case::new(10, 8);
     for little in [f64::MIN_POSITIVE, 1e-300, 1e-30, 1e-17] {
@@ -330,21 +330,21 @@ fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> 
 
 /// A disc within a rounding error of a periodic side belongs to the first or the last column, for any origin.
 #[test]
-fn no_disc_next_to_a_periodic_side_is_a_stray() {
+fn discs_near_periodic_sides_are_no_strays() {
     let found = strays_at_periodic_sides(|random| 20.0 * random.random::<f64>() - 10.0);
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
 }
 
 /// With the lattice at the origin of coordinates no disc becomes a stray either; there the far side is the period.
 #[test]
-fn no_disc_next_to_a_periodic_side_of_a_lattice_at_the_origin_is_a_stray() {
+fn lattices_at_the_origin_have_no_strays() {
     let found = strays_at_periodic_sides(|_| 0.0);
     assert!(found.is_empty(), "{} strays of 1800, the first: {}", found.len(), found[0]);
 }
 
 /// A disc inside a closed lattice is no stray, however near the far side it is.
 #[test]
-fn no_disc_inside_a_closed_side_is_a_stray() {
+fn discs_inside_closed_sides_are_no_strays() {
     let case = Case { periodic: [false, false], ..Case::new(17, 6) };
     let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.25] };
     let x = (-3.0 + 17.0 * 1.1f64).next_down();

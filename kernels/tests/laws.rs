@@ -54,7 +54,7 @@ fn message<R>(work: impl FnOnce() -> R) -> String {
 }
 
 #[test]
-fn a_law_that_forgets_a_field_or_a_sum_is_refused() {
+fn incomplete_laws_are_rejected() {
     let system = System::<f64, f64>::random(&Case::new(13, 9));
     let order: Vec<u32> = (0..system.discs as u32).collect();
     for (torque, refusal) in [(false, RADIUS), (true, TORQUE)] {
@@ -75,7 +75,7 @@ fn a_law_that_forgets_a_field_or_a_sum_is_refused() {
 
 /// A law in safe code that passes the check is stopped at the first unstated quantity; nothing is read out of bounds.
 #[test]
-fn a_law_that_hides_what_it_asks_for_is_stopped() {
+fn laws_hiding_unstated_quantities_are_stopped() {
     let system = System::<f64, f64>::random(&Case::new(13, 9));
     let order: Vec<u32> = (0..system.discs as u32).collect();
     for (torque, refusal) in [(false, RADIUS), (true, TORQUE)] {
@@ -177,7 +177,7 @@ impl Env<3> for &InSpace {
 }
 
 #[test]
-fn a_law_in_space_reads_and_adds_along_z_and_turns_nothing() {
+fn laws_in_space_use_z_without_torque() {
     let meet = |law: Dashpot| {
         let pair = InSpace { velocity: [[1.0, 2.0, 3.0], [5.0, 4.0, -3.0]], sums: RefCell::default() };
         let env = Stated::new(&pair, &law);
@@ -195,7 +195,7 @@ fn a_law_in_space_reads_and_adds_along_z_and_turns_nothing() {
 
 /// A law of the plane that reads a quantity of the third axis is rejected like any that reads an unstated one.
 #[test]
-fn a_law_of_the_plane_is_given_nothing_along_z() {
+fn planar_laws_cannot_read_z() {
     #[derive(Clone)]
     struct Lifting;
     impl Law<2> for Lifting {
@@ -216,7 +216,7 @@ fn a_law_of_the_plane_is_given_nothing_along_z() {
 
 /// The lists contain every field and sum of their dimensions, each in one column.
 #[test]
-fn the_lists_of_the_plane_are_those_without_z() {
+fn planar_lists_omit_z() {
     let planar: Vec<Field> = Field::ALL.into_iter().filter(|field| field.is_in(2)).collect();
     assert_eq!(planar, Field::PLANAR);
     let planar: Vec<Sum> = Sum::ALL.into_iter().filter(|sum| sum.is_in(2)).collect();
@@ -227,7 +227,7 @@ fn the_lists_of_the_plane_are_those_without_z() {
 }
 
 #[test]
-fn the_laws_that_run_state_what_they_ask_for() {
+fn granular_laws_pass_their_check() {
     assert_eq!(check(&varying::<true>(CONTACT)), Ok(()));
     assert_eq!(check(&varying::<false>(CONTACT)), Ok(()));
     assert_eq!(check(&equal::<true>(CONTACT)), Ok(()));
@@ -236,7 +236,7 @@ fn the_laws_that_run_state_what_they_ask_for() {
 
 /// For springs alone, the force is the slope of the energy, and the virial is that force times the vector between the centres.
 #[test]
-fn the_energy_is_that_of_the_force_and_the_virial_is_the_forces() {
+fn spring_energy_and_virial_match_the_force() {
     let springs = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
     let law = varying::<true>(springs);
     let (mut touching, mut apart) = (0, 0);

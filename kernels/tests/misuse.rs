@@ -73,7 +73,7 @@ fn refused<T: Text<Lane = f64>>(
 
 /// Control of the tests below: without an error, the same kernel writes and counts in every execution.
 #[test]
-fn a_program_with_nothing_wrong_runs() {
+fn valid_kernels_run_in_every_execution() {
     for (execution, set) in ways() {
         let mut arrays = Touched::new(32, 32, 32);
         let memory = arrays.memory();
@@ -88,7 +88,7 @@ fn a_program_with_nothing_wrong_runs() {
 
 /// The error names an unbound array with the requested element type; a slice of another type is no substitute.
 #[test]
-fn an_unbound_array_is_named() {
+fn errors_name_unbound_arrays() {
     for (execution, set) in ways() {
         let error = Program::new(Touch).run(&Memory::new(), 0..0, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::Unbound { array: "Fy", element: "f64" });
@@ -105,7 +105,7 @@ fn an_unbound_array_is_named() {
 
 /// An array that is written must be bound for writing, for stores and for scatters.
 #[test]
-fn writing_an_array_bound_for_reading_is_refused() {
+fn writes_to_read_only_arrays_are_rejected() {
     for (execution, set) in ways() {
         let (x, fx, mut fy) = (vec![1.0; 32], vec![-7.0; 32], vec![-7.0; 32]);
         let memory = Memory::new().read(X, &x).read(FX, &fx).write(FY, &mut fy);
@@ -127,7 +127,7 @@ fn writing_an_array_bound_for_reading_is_refused() {
 
 /// Shifts before the first or behind the last element are rejected, with the exact elements.
 #[test]
-fn too_short_an_array_is_refused_to_the_element() {
+fn too_short_arrays_are_rejected_exactly() {
     let range = |start: usize, end: usize, arrays: [usize; 3], way| {
         let [x, fx, fy] = arrays;
         refused(Touch, &mut Touched::new(x, fx, fy), start..end, way)
@@ -155,7 +155,7 @@ fn too_short_an_array_is_refused_to_the_element() {
 
 /// Strips without elements.
 #[test]
-fn impossible_strips_are_refused() {
+fn empty_strips_are_rejected() {
     for set in [InstructionSet::Scalar, BEST()] {
         let mut arrays = Touched::new(40, 40, 40);
         let error = refused(Touch, &mut arrays, 3..30, (Execution::Strip(0), set));
@@ -165,7 +165,7 @@ fn impossible_strips_are_refused() {
 
 /// The error names an instruction set that this processor lacks (no processor has both AVX2 and Neon).
 #[test]
-fn an_absent_instruction_set_is_named() {
+fn errors_name_absent_instruction_sets() {
     let mut absent = InstructionSet::ALL.iter().copied().filter(|set| !set.is_available()).peekable();
     assert!(absent.peek().is_some());
     for set in absent {
@@ -194,7 +194,7 @@ unsafe impl Text for Hazard {
 /// A kernel that writes an array it also reads at a shift is rejected.
 #[test]
 #[should_panic(expected = "x is written and read at a shift, so results would depend on the strip length")]
-fn a_text_that_writes_what_it_loads_at_a_shift_is_refused() {
+fn kernels_with_shift_hazards_are_rejected() {
     Program::new(Hazard);
 }
 
@@ -260,7 +260,7 @@ fn an_index_vector_numbers_elements_from_one() {
 
 /// A wrong entry anywhere panics with the element (from 0) and the length; nothing is read or written out of bounds.
 #[test]
-fn a_wrong_index_vector_panics_with_element_and_length() {
+fn wrong_indices_panic_with_element_and_length() {
     for way in ways() {
         for (text, what, why) in [
             (Through::Gather, "gather from", "the array has 8 elements"),
@@ -285,7 +285,7 @@ fn a_wrong_index_vector_panics_with_element_and_length() {
 
 /// An empty array has no element to gather: an entry that numbers one panics in every execution.
 #[test]
-fn gathering_from_an_empty_array_panics_in_every_execution() {
+fn gathering_from_empty_arrays_panics() {
     for way in ways() {
         assert_eq!(through(Through::Gather, &[0, 0, 0], 0, way).unwrap().0, [-1.0; 3]);
         let message = through(Through::Gather, &[0, 1, 0], 0, way);

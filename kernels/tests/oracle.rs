@@ -231,31 +231,31 @@ fn compare_everywhere<L: Law<2> + Sync>(law: impl Fn(Contact) -> L, all_alike: b
 
 /// Lattice and all-pairs forces agree for varying discs with friction and rotation.
 #[test]
-fn forces_are_those_of_all_pairs_for_varying_discs_with_friction() {
+fn varying_discs_with_friction_match_all_pairs() {
     compare_everywhere(varying::<true>, false, true);
 }
 
 /// Lattice and all-pairs forces agree for varying discs without friction.
 #[test]
-fn forces_are_those_of_all_pairs_for_varying_discs_without_friction() {
+fn varying_discs_without_friction_match_all_pairs() {
     compare_everywhere(varying::<false>, false, false);
 }
 
 /// Lattice and all-pairs forces agree for equal discs with friction and rotation.
 #[test]
-fn forces_are_those_of_all_pairs_for_equal_discs_with_friction() {
+fn equal_discs_with_friction_match_all_pairs() {
     compare_everywhere(equal::<true>, true, true);
 }
 
 /// Lattice and all-pairs forces agree for equal discs without friction.
 #[test]
-fn forces_are_those_of_all_pairs_for_equal_discs_without_friction() {
+fn equal_discs_without_friction_match_all_pairs() {
     compare_everywhere(equal::<false>, true, false);
 }
 
 /// On the smallest periodic lattice, 2h + 1 cells a side, every pair is visited exactly once.
 #[test]
-fn the_shortest_periodic_sides_meet_no_pair_twice() {
+fn shortest_periodic_sides_visit_pairs_once() {
     for seed in 0..50 {
         let case = Case { fill: 0.6, seed, ..Case::new(5, 5) };
         compare(&case, &varying::<true>(case.contact), false, true);
@@ -291,7 +291,7 @@ fn single_precision_error(coordinates: Coordinates) -> f64 {
 
 /// Cell-relative coordinates preserve single precision far from the origin; absolute ones do not.
 #[test]
-fn single_precision_forces_far_from_the_origin_need_cell_relative_coordinates() {
+fn single_precision_needs_cell_relative_coordinates() {
     let relative = single_precision_error(Coordinates::CellRelative);
     let absolute = single_precision_error(Coordinates::Absolute);
     println!("relative rms error: cell-relative {relative:.2e}, absolute {absolute:.2e}");

@@ -42,7 +42,7 @@ fn pair_on_the_lattice(
 
 /// In cell-relative coordinates the two forces of a pair are opposite to the bit, also across a seam.
 #[test]
-fn action_is_reaction_to_the_bit() {
+fn action_equals_reaction_to_the_bit() {
     let (mut seams, mut inside, mut random) = (0, 0, Stream::new(1, Purpose::Test, 1));
     for contact in contacts() {
         for mut pair in random_pairs(2, 300) {
@@ -66,7 +66,7 @@ fn action_is_reaction_to_the_bit() {
 
 /// A pair on the lattice has the same forces and torques as without a lattice.
 #[test]
-fn a_pair_on_the_lattice_is_a_pair_without_one() {
+fn lattice_pairs_match_free_pairs() {
     for contact in contacts() {
         for mut pair in random_pairs(3, 50) {
             pair.bodies.iter_mut().for_each(|body| body.position[1] += 6.0);
@@ -101,7 +101,7 @@ fn the_total_force_of_a_system_is_zero() {
 
 /// d(L_orbital + L_spin)/dt = −ξ F_S with arms R, and 0 with arms R − ξ/2.
 #[test]
-fn angular_momentum_changes_by_the_depth_times_the_shear_force_alone() {
+fn angular_momentum_rate_is_depth_times_shear() {
     let mut largest = 0.0f64;
     for contact in contacts() {
         for pair in random_pairs(4, 1000) {
@@ -122,7 +122,7 @@ fn angular_momentum_changes_by_the_depth_times_the_shear_force_alone() {
 
 /// |F_S| ≤ μ|F_N|; F_S opposes the slip; below the bound it is γ_S M_eff times the slip; both signs occur.
 #[test]
-fn friction_opposes_slip_within_the_coulomb_bound_on_both_sides_of_zero() {
+fn friction_opposes_slip_within_the_coulomb_bound() {
     let contact = Contact { shear_damping: 20.0, ..CONTACT };
     let law = varying::<true>(contact);
     let (mut bound, mut free) = ([0; 2], [0; 2]);
@@ -156,7 +156,7 @@ fn the_law_is_mirror_symmetric() {
 
 /// Gears that roll on each other have no shear force and no torque; equal spins rub.
 #[test]
-fn a_gear_pair_does_not_rub_and_equal_spins_do() {
+fn gears_roll_and_equal_spins_rub() {
     for arm in [ContactArm::Radius, ContactArm::Overlap] {
         let law = varying::<true>(Contact { arm, ..CONTACT });
         let [normal, shear] = Pair::gears(1.0).normal_and_shear(&law);
@@ -199,7 +199,7 @@ fn only_the_unclamped_law_pulls() {
 
 /// A fixed disc has infinite mass: the effective mass is the other's, twice that of an equal pair.
 #[test]
-fn a_fixed_disc_gives_the_effective_mass_of_the_other() {
+fn fixed_discs_have_infinite_mass() {
     let contact = Contact { cohesionless: false, friction: 1e6, ..CONTACT };
     let law = varying::<true>(contact);
     for mut pair in random_pairs(8, 200) {
@@ -230,13 +230,13 @@ fn fixed_pair(cohesionless: bool) -> [[f64; 3]; 2] {
 
 /// With the clamp, two fixed discs in contact have finite forces.
 #[test]
-fn two_fixed_discs_in_contact_feel_numbers() {
+fn clamped_fixed_contacts_have_finite_forces() {
     assert!(fixed_pair(true).as_flattened().iter().all(|f| f.is_finite()), "{:?}", fixed_pair(true));
 }
 
 /// Without the clamp the sums of two touching fixed discs may be NaN; those of a grain beside them are finite.
 #[test]
-fn fixed_discs_in_contact_leave_the_forces_on_others_alone() {
+fn fixed_contacts_do_not_affect_other_discs() {
     let case = Case {
         periodic: [false; 2],
         contact: Contact { cohesionless: false, ..CONTACT },
@@ -256,7 +256,7 @@ fn fixed_discs_in_contact_leave_the_forces_on_others_alone() {
 
 /// Equal discs need no arrays of radii and masses: the law's constants give the same forces.
 #[test]
-fn equal_discs_feel_what_varying_ones_of_one_kind_do() {
+fn equal_and_varying_compilations_agree() {
     for contact in contacts() {
         let disc = Disc { radius: 1.05, inverse_mass: 0.4 };
         let alike = Granular::<true, true> { contact, disc };

@@ -100,7 +100,7 @@ fn step<const VALUES: usize>(system: &mut Discs, case: &Case, way: Way) {
 }
 
 #[test]
-fn whole_steps_are_the_same_bits_by_every_execution() {
+fn printed_steps_are_bit_equal_in_every_execution() {
     for periodic in sides() {
         for fill in [0.0, 0.4, 1.0] {
             let case = Case { fill, ..case(periodic, 1) };
@@ -177,7 +177,7 @@ fn scalar(system: &Discs, case: &Case) -> (Vec<[f64; 3]>, usize) {
 
 /// Products by 0 and 1 are exact: the program of whole vectors gives the bits of one with branches.
 #[test]
-fn products_by_test_and_contact_are_branches_to_the_bit() {
+fn products_equal_branches_to_the_bit() {
     let mut met = 0;
     for (seed, periodic) in (0..40).flat_map(|seed| sides().map(|periodic| (seed, periodic))) {
         let case = Case { fill: [0.1, 0.4, 0.9][seed as usize % 3], ..case(periodic, seed) };
@@ -204,7 +204,7 @@ fn products_by_test_and_contact_are_branches_to_the_bit() {
 
 /// Our kernel sums the same forces with another order of operations.
 #[test]
-fn forces_are_ours_but_for_rounding() {
+fn printed_forces_match_ours_up_to_rounding() {
     let way = (Execution::Chained, InstructionSet::best());
     for (seed, periodic) in (0..20).flat_map(|seed| sides().map(|periodic| (seed, periodic))) {
         let case = case(periodic, seed);
@@ -228,7 +228,7 @@ fn forces_are_ours_but_for_rounding() {
 
 /// Whole steps equal ours: the scheme of scaled derivatives is the same scheme.
 #[test]
-fn steps_are_ours_but_for_rounding() {
+fn printed_steps_match_ours_up_to_rounding() {
     use stripmine_kernels::integrator::Inertia;
     fn beside<const VALUES: usize>(case: &Case) {
         let way = (Execution::Chained, InstructionSet::best());
@@ -268,7 +268,7 @@ fn steps_are_ours_but_for_rounding() {
 /// Every section is an equation and every array is in the paper. Nothing else is executed: one comparison and one merge, of 1 and
 /// 0, both of (7); min and max of (15).
 #[test]
-fn every_operation_and_array_is_named_by_an_equation() {
+fn equations_name_every_operation_and_array() {
     let case = case([true, true], 1);
     let system = Discs::random(&case);
     let (shape, frame, mask) = (system.shape, system.frame, Mask::square(2));
@@ -321,7 +321,7 @@ fn every_operation_and_array_is_named_by_an_equation() {
 
 /// Readings of an empty cell, as listed in the module's documentation.
 #[test]
-fn empty_cells_at_one_place_make_sums_that_are_no_numbers() {
+fn coinciding_empty_cells_give_nan_sums() {
     let case = Case { fill: 0.3, ..case([true, true], 5) };
     let mut right = unscaled(Discs::random(&case));
     map(&mut right, ORACLE);
@@ -363,7 +363,7 @@ fn empty_cells_at_one_place_make_sums_that_are_no_numbers() {
 
 /// With a fixed disc the effective mass is the other's.
 #[test]
-fn a_fixed_disc_is_so_heavy_that_the_effective_mass_is_the_grains_own() {
+fn fixed_discs_leave_the_grains_mass_unchanged() {
     for largest in [1e-6, 0.37, 1.0, 1.5, 4e12] {
         let fixed = mass_of_fixed_disc(largest);
         for share in [1.0, 0.9, 0.123_456_789, 1e-3] {
@@ -416,7 +416,7 @@ fn every_position_in_the_box_has_a_cell() {
 
 /// Observations beyond the paper equal those of our own law.
 #[test]
-fn dissipation_energy_and_virial_are_those_of_our_own_law() {
+fn printed_observations_match_ours() {
     use stripmine_kernels::law::Asked;
     let case = case([true, true], 11);
     let way = (Execution::Chained, InstructionSet::best());
@@ -437,7 +437,7 @@ fn dissipation_energy_and_virial_are_those_of_our_own_law() {
 
 /// The law reads only the quantities it states.
 #[test]
-fn the_law_states_what_it_asks_for() {
+fn the_printed_law_passes_its_check() {
     stripmine_kernels::law::check(&Printed { contact: LAW }).unwrap();
     assert!(<Printed as Law<2>>::FIELDS.len() == 6);
 }

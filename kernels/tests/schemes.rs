@@ -102,7 +102,7 @@ fn noise_depends_on_seed_disc_and_step_alone() {
 /// For free discs with steps three times as long, each number combines three. They are compared with the recursion v' = c v + s
 /// ξ.
 #[test]
-fn numbers_of_a_long_step_are_made_of_those_of_its_parts() {
+fn long_steps_combine_noise_of_parts() {
     const PARTS: u32 = 3;
     let ids: Vec<u32> = (0..600).collect();
     let noise = NoiseSource { seed: SEED, parts: PARTS };
@@ -180,7 +180,7 @@ fn naive_stochastic(id: u32, steps: u64, stiffness: f64, old: bool) -> [f64; 2] 
 
 /// Schemes with friction and noise receive force, mass and noise, and move discs as plain numbers do.
 #[test]
-fn langevin_schemes_move_discs_as_in_plain_numbers() {
+fn langevin_schemes_match_plain_numbers() {
     fn hold<C: Scheme>(scheme: C, expected: impl Fn(u32) -> [f64; 2]) {
         let ids: Vec<u32> = (0..1003).rev().collect();
         let expected: Vec<[f64; 2]> = (0..1003).map(expected).collect();
@@ -198,7 +198,7 @@ fn langevin_schemes_move_discs_as_in_plain_numbers() {
 
 /// In a harmonic trap BAOAB has ⟨r²⟩ = kT/k for every step, here with ω dt = 0.7.
 #[test]
-fn baoab_has_the_width_of_boltzmann_in_a_trap() {
+fn baoab_has_the_boltzmann_width() {
     let bath = Bath { friction: 0.5, temperature: 0.5 };
     let ids: Vec<u32> = (0..8000).collect();
     let scheme = Baoab::new(bath, 0.5, 0.5);

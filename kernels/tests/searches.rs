@@ -175,7 +175,7 @@ fn search(lattice: &Lattice<'_, f64>, entries: usize) -> Candidates {
 
 /// Tables and columns that are too short for a lattice are rejected before they are read unchecked.
 #[test]
-fn a_lattice_takes_only_its_own_codes_and_columns() {
+fn lattices_reject_foreign_codes_and_columns() {
     let [(narrow, frame), (wide, _)] = [lattice(20), lattice(40)];
     let [of_narrow, of_wide] = [&narrow, &wide].map(|occupancy| Codes::<f64>::new(occupancy, frame));
     let refused = |codes, entries| {
@@ -189,7 +189,7 @@ fn a_lattice_takes_only_its_own_codes_and_columns() {
 
 /// Threads share the construction of lists; the result does not depend on their number.
 #[test]
-fn lists_are_the_same_on_any_number_of_threads() {
+fn verlet_lists_do_not_depend_on_threads() {
     let made = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -256,7 +256,7 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
 /// If there are fewer bands than threads, sectors are searched in parts by all threads; forces, energy and pairs equal those of
 /// one thread to the bit. If there are enough bands, each thread takes whole bands.
 #[test]
-fn few_sectors_are_searched_by_all_threads_to_the_same_bits() {
+fn joint_searches_are_bit_equal_to_serial_ones() {
     let law = CutOff::new(LennardJones::new(1.0, 0.9), 1.0);
     for (sides, periodic, discs, is_coarse) in [
         ([9.0, 9.0], [true, true], 6000, true),

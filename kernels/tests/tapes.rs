@@ -219,7 +219,7 @@ fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&
 
 /// Registers of every kernel.
 #[test]
-fn registers_are_read_as_written_and_no_more_than_values_alive() {
+fn register_allocation_is_sound_and_minimal() {
     every_tape(registers_are_sound, registers_are_sound);
 }
 

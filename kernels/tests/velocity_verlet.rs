@@ -111,7 +111,7 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
 }
 
 #[test]
-fn the_state_is_position_and_velocity_in_the_scenes_units() {
+fn the_state_is_in_scene_units() {
     assert_eq!(VelocityVerlet::scales(1e-3)[..3], [1.0; 3]);
     // Without forces a disc keeps its velocity to the bit, for any dt.
     let mut state = start(5);
@@ -144,7 +144,7 @@ fn programs_and_passes_give_the_same_bits() {
 
 /// Second order on a harmonic oscillator.
 #[test]
-fn the_error_falls_with_the_square_of_the_step() {
+fn velocity_verlet_is_of_second_order() {
     let error = |steps: usize| {
         let dt = 4.0 / steps as f64;
         let mut state = start(1);

@@ -136,7 +136,7 @@ fn a_stage_begins_when_the_one_before_is_done() {
 }
 
 #[test]
-fn those_kept_awake_are_let_go() {
+fn awake_threads_are_released() {
     explored(2, || {
         keep_awake(WORKERS - 1, || ());
         keep_awake(WORKERS - 1, || each(WORKERS, [1, 2], &|_, _| ()));
@@ -150,7 +150,7 @@ fn simulation() {
 /// Two simulations beside the pool keep workers awake, and then have parts for them. Unless they release them, both workers stay
 /// with simulations that wait for them.
 #[test]
-fn two_simulations_do_not_wait_for_each_other() {
+fn two_simulations_do_not_deadlock() {
     explored(1, || {
         let other = loom::thread::spawn(simulation);
         simulation();
@@ -160,7 +160,7 @@ fn two_simulations_do_not_wait_for_each_other() {
 
 /// One of the two is in the pool.
 #[test]
-fn a_simulation_in_the_pool_does_not_wait_for_one_beside_it() {
+fn simulations_inside_and_outside_do_not_deadlock() {
     explored(2, || {
         pool::spawn(simulation);
         simulation();

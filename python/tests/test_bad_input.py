@@ -78,7 +78,7 @@ UNTYPED = [
 
 
 class Scenes(unittest.TestCase):
-    def test_wrong_scenes_are_refused_in_words(self):
+    def test_wrong_scenes_raise_scene_errors(self):
         for name, overrides, words in WRONG:
             with self.subTest(name=name, overrides=str(overrides)):
                 with self.assertRaisesRegex(stripmine.SceneError, words) as caught:
@@ -86,7 +86,7 @@ class Scenes(unittest.TestCase):
                 self.assertTrue(caught.exception.mistakes)
                 self.assertNotIn("\x1b", str(caught.exception))
 
-    def test_what_has_no_form_in_a_scene_is_a_type_error(self):
+    def test_invalid_types_raise_type_errors(self):
         for number, wrong in enumerate(UNTYPED):
             with self.subTest(number), self.assertRaises(TypeError):
                 wrong()
@@ -97,7 +97,7 @@ class Scenes(unittest.TestCase):
         with self.assertRaises(UnicodeError):
             stripmine.scene("two-discs", {"particles.file": "\ud800"})
 
-    def test_all_mistakes_come_at_once_with_their_places(self):
+    def test_all_mistakes_have_their_location(self):
         text = 'format = 2\nunits = "reduced"\n[method]\nkind = "hard-disks"\n[particles]\ncount = "x"\nradis = 1\n'
         with self.assertRaises(stripmine.SceneError) as caught:
             stripmine.scene(text, {"run.tme": 1})
@@ -109,7 +109,7 @@ class Scenes(unittest.TestCase):
         self.assertIsInstance(caught.exception, ValueError)
 
     @unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")
-    def test_the_words_are_those_of_the_command(self):
+    def test_messages_match_the_command(self):
         for name, overrides in [("hard-disks", {"particles.cuont": 5, "law.restitution": 7}), ("hard-discs", {})]:
             arguments = [scenes.command(), "scene", "check", name, *scenes.flat(overrides)]
             said = subprocess.run(arguments, capture_output=True, text=True).stderr
@@ -119,7 +119,7 @@ class Scenes(unittest.TestCase):
 
 
 class Advancing(unittest.TestCase):
-    def test_distances_that_are_none_are_refused(self):
+    def test_invalid_distances_are_rejected(self):
         soft, hard = (stripmine.scene(name, scenes.SHORT[name]).start() for name in ("dense-gas", "hard-disks"))
         for simulation, given, kind in [
             (soft, {}, TypeError),
@@ -143,7 +143,7 @@ class Advancing(unittest.TestCase):
         soft.advance(steps=np.int64(2))
         self.assertEqual(soft.step, 2)
 
-    def test_what_has_failed_does_not_go_on(self):
+    def test_failed_simulations_do_not_continue(self):
         simulation = stripmine.scene("two-discs", TOO_FAST).start()
         with self.assertRaises(stripmine.SimulationError) as first:
             simulation.advance(steps=1000)
@@ -158,7 +158,7 @@ class Advancing(unittest.TestCase):
         simulation.observe()
         simulation.particles()
 
-    def test_a_run_that_fails_says_where_and_why(self):
+    def test_failed_runs_report_location_and_reason(self):
         scene = stripmine.scene("two-discs", TOO_FAST)
         with tempfile.TemporaryDirectory() as folder:
             with self.assertRaisesRegex(stripmine.SimulationError, "last frame of"):
@@ -170,7 +170,7 @@ class Advancing(unittest.TestCase):
 
 
 class Errors(unittest.TestCase):
-    def test_errors_go_from_one_process_to_another(self):
+    def test_errors_can_be_pickled(self):
         simulation = stripmine.scene("two-discs", TOO_FAST).start()
         for fail in (
             lambda: stripmine.scene("two-discs", {"a.b": 1}),
@@ -186,7 +186,7 @@ class Errors(unittest.TestCase):
 
 
 class Folders(unittest.TestCase):
-    def test_a_folder_that_is_not_free_is_refused(self):
+    def test_occupied_folders_are_rejected(self):
         scene = stripmine.scene("two-discs", {"run.steps": 10})
         with tempfile.TemporaryDirectory() as folder:
             scene.run(folder)
@@ -206,7 +206,7 @@ class Folders(unittest.TestCase):
         with self.assertRaises(stripmine.RunError):
             scene.run("/proc/nowhere")
 
-    def test_what_is_no_run_is_not_read(self):
+    def test_folders_without_a_run_are_rejected(self):
         with self.assertRaisesRegex(stripmine.RunError, "thermo.csv"):
             stripmine.read("/nowhere")
         with tempfile.TemporaryDirectory() as folder:
@@ -215,7 +215,7 @@ class Folders(unittest.TestCase):
                 with self.subTest(text), self.assertRaises(stripmine.RunError):
                     stripmine.read(folder)
 
-    def test_damaged_files_are_said_to_be(self):
+    def test_damaged_files_are_reported(self):
         with tempfile.TemporaryDirectory() as folder:
             run = stripmine.scene("two-discs", {"run.steps": 10}).run(folder)
             (Path(folder) / "trajectory.xyz").write_text("3\nnothing\n")
@@ -228,7 +228,7 @@ class Folders(unittest.TestCase):
             with self.assertRaises(stripmine.RunError):
                 run.toml()
 
-    def test_runs_that_are_no_pair_are_not_joined(self):
+    def test_unrelated_runs_are_not_joined(self):
         runs = [stripmine.scene("hard-disks", {**scenes.SHORT["hard-disks"], "particles.seed": seed}).run() for seed in (1, 2)]
         self.assertEqual(len(stripmine.average(*runs)), len(runs[0].averages()))
         with self.assertRaisesRegex(stripmine.RunError, "are the same run"):

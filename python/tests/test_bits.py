@@ -32,7 +32,7 @@ def rows(table):
 
 
 class Bits(unittest.TestCase):
-    def test_pieces_are_the_whole(self):
+    def test_advancing_in_pieces_changes_nothing(self):
         for name, overrides in scenes.SHORT.items():
             with self.subTest(name):
                 scene = stripmine.scene(name, overrides)
@@ -56,7 +56,7 @@ class Bits(unittest.TestCase):
                 there[:, at] = found[:, at]
         np.testing.assert_array_equal(there, found)
 
-    def test_a_simulation_observes_the_rows_of_a_run(self):
+    def test_observations_match_rows_of_runs(self):
         for name, overrides in scenes.SHORT.items():
             with self.subTest(name):
                 scene = stripmine.scene(name, overrides)
@@ -77,7 +77,7 @@ class Bits(unittest.TestCase):
                 self.assertEqual((last.time, len(last.particles)), (simulation.time, len(particles)))
 
     @unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")
-    def test_a_run_is_that_of_the_command(self):
+    def test_runs_match_the_command(self):
         for name, overrides in scenes.SHORT.items():
             with self.subTest(name), tempfile.TemporaryDirectory() as folder:
                 theirs, ours = Path(folder) / "theirs", Path(folder) / "ours"
@@ -90,7 +90,7 @@ class Bits(unittest.TestCase):
                 np.testing.assert_array_equal(rows(read.thermo()), rows(run.thermo()))
                 self.assertEqual(read.toml(), stripmine.scene(name, overrides).toml())
 
-    def test_a_run_that_goes_on_is_one_that_was_never_stopped(self):
+    def test_resumed_runs_match_uninterrupted_runs(self):
         with tempfile.TemporaryDirectory() as folder:
             overrides = scenes.SHORT["dense-gas"]
             run = stripmine.scene("dense-gas", {**overrides, "run.steps": 40}).run(folder)
@@ -99,7 +99,7 @@ class Bits(unittest.TestCase):
             whole = stripmine.scene("dense-gas", overrides).run()
             np.testing.assert_array_equal(rows(run.thermo()), rows(whole.thermo()))
 
-    def test_arrays_are_the_particles_to_the_bit(self):
+    def test_arrays_set_particles_exactly(self):
         text = stripmine.scene("two-discs").toml()
         given = {
             "particles.positions": [[1.0 / 3.0, 1.0], [2.0, 1.0 + 1e-15]],
@@ -111,7 +111,7 @@ class Bits(unittest.TestCase):
 
 
 class Forces(unittest.TestCase):
-    def test_forces_of_pairs_move_what_is_free(self):
+    def test_pair_forces_match_accelerations(self):
         # Mass times the change of velocity in a short step; discs in contact, no gravity.
         scene = stripmine.scene("two-discs")
         simulation = scene.start()
@@ -126,7 +126,7 @@ class Forces(unittest.TestCase):
         np.testing.assert_allclose(force.sum(axis=0), 0, atol=1e-9 * np.abs(force).max())
         np.testing.assert_allclose(found, force, rtol=0.05, atol=1e-3 * np.abs(force).max())
 
-    def test_what_has_no_such_forces_says_so(self):
+    def test_methods_without_pair_forces_raise(self):
         for name in ("hard-disks", "cold-collapse"):
             simulation = stripmine.scene(name, scenes.SHORT[name]).start()
             with self.assertRaisesRegex(stripmine.Error, "no continuous pair forces"):

@@ -25,7 +25,7 @@ class ElsewhereTest(unittest.TestCase):
         for name in ARRAYS:
             np.testing.assert_array_equal(getattr(ours, name), getattr(theirs, name), name)
 
-    def test_a_run_is_read_from_any_folder(self):
+    def test_runs_are_read_from_any_folder(self):
         with tempfile.TemporaryDirectory() as folder:
             before = os.getcwd()
             try:
@@ -42,7 +42,7 @@ class ElsewhereTest(unittest.TestCase):
             finally:
                 os.chdir(before)
 
-    def test_what_is_handed_over_is_the_same(self):
+    def test_copies_are_identical(self):
         scene = stripmine.scene("hard-disks", {"particles.count": 56})
         with tempfile.TemporaryDirectory() as folder:
             run = stripmine.scene("two-discs", {"run.steps": 20, "run.snapshot_every": 10}).run(folder)
@@ -70,7 +70,7 @@ class ElsewhereTest(unittest.TestCase):
                     with self.assertRaisesRegex(TypeError, words):
                         of(thing)
 
-    def test_a_scene_goes_to_another_process(self):
+    def test_scenes_can_be_sent_to_processes(self):
         scene = stripmine.scene("hard-disks", {"particles.count": 56})
         with multiprocessing.get_context("spawn").Pool(1) as pool:
             [(time, particles)] = pool.map(advanced, [scene])
@@ -78,7 +78,7 @@ class ElsewhereTest(unittest.TestCase):
         self.assertEqual(time, expected[0])
         self.same(particles, expected[1])
 
-    def test_a_time_in_pieces_is_that_time(self):
+    def test_times_in_pieces_add_up(self):
         few = {"particles.count": 100}
         for name, overrides, piece, times, steps in (
             ("langevin-dense", {}, 0.05, 200, 2000),
@@ -101,7 +101,7 @@ class ElsewhereTest(unittest.TestCase):
                 self.assertEqual(pieces.time, whole.time)
                 self.same(pieces.particles(), whole.particles())
 
-    def test_discs_come_to_a_time_in_any_pieces(self):
+    def test_hard_discs_reach_times_exactly(self):
         for name, overrides in (
             ("hard-disks", {"particles.count": 100}),
             ("hard-disks", {"particles.count": 100, "machine.engine": "reference"}),
@@ -116,7 +116,7 @@ class ElsewhereTest(unittest.TestCase):
                 self.assertEqual((pieces.time, pieces.events), (whole.time, whole.events))
                 self.same(pieces.particles(), whole.particles())
 
-    def test_steps_after_a_time_are_from_where_it_is(self):
+    def test_steps_after_a_time_continue_there(self):
         simulation = stripmine.scene("langevin-free", {"particles.count": 4}).start()
         simulation.advance(time=0.025)
         self.assertEqual(simulation.step, 3)

@@ -36,7 +36,7 @@ def child(ask, answer):
 
 
 class Threads(unittest.TestCase):
-    def test_other_threads_go_on_and_have_no_part_in_a_simulation(self):
+    def test_simulations_are_for_one_thread(self):
         simulation = stripmine.scene("dense-gas", LONG).start()
         simulation.advance(steps=1)
         done = threading.Event()
@@ -67,7 +67,7 @@ class Threads(unittest.TestCase):
 
 
 class Interruption(unittest.TestCase):
-    def test_advancing_is_interrupted_and_goes_on(self):
+    def test_interrupted_advances_can_continue(self):
         for name in scenes.SHORT:
             with self.subTest(name):
                 scene = stripmine.scene(name, {"particles.count": 200} if name != "pipe-small" else None)
@@ -85,7 +85,7 @@ class Interruption(unittest.TestCase):
                     other.advance(steps=simulation.step)
                 self.assertEqual(simulation.observe(), other.observe())
 
-    def test_a_step_longer_than_a_beat_comes_to_its_end(self):
+    def test_long_steps_finish(self):
         # Bodies can be interrupted within a step, which then starts over; this step takes a second.
         scene = stripmine.scene("cold-collapse", {"integrator.kind": "gear-6", "run.steps": 2, "run.thermo_every": 1})
         simulation = scene.start()
@@ -93,7 +93,7 @@ class Interruption(unittest.TestCase):
         simulation.advance(steps=1)
         np.testing.assert_array_equal(simulation.particles().positions, [*scene.run().frames()][-1].particles.positions)
 
-    def test_a_run_is_interrupted_with_a_checkpoint(self):
+    def test_interrupted_runs_leave_checkpoints(self):
         with tempfile.TemporaryDirectory() as folder:
             scene = stripmine.scene("dense-gas", {**LONG, "run.thermo_every": 100, "run.snapshot_every": 0})
             timer = interrupted_soon()
@@ -118,7 +118,7 @@ class Forks(unittest.TestCase):
         process.join()
         return said
 
-    def test_a_child_is_refused_and_does_not_wait_for_ever(self):
+    def test_forked_children_get_errors(self):
         scene = stripmine.scene("dense-gas", scenes.SHORT["dense-gas"])
         simulation, run = scene.start(), scene.run()
         for ask in (lambda: simulation.advance(steps=1), simulation.observe, scene.start, scene.run, run.averages):
@@ -130,7 +130,7 @@ class Forks(unittest.TestCase):
 
 
 class Folders(unittest.TestCase):
-    def test_a_folder_that_nobody_asked_for_goes_with_its_run(self):
+    def test_temporary_folders_are_removed(self):
         run = stripmine.scene("two-discs", {"run.steps": 10}).run()
         folder, frames = run.folder, run.frames()
         del run

@@ -39,14 +39,14 @@ class Stub(unittest.TestCase):
         if not is_property and not function.name.startswith("__"):
             self.assertEqual(parameters(function), parameters_there(there), name)
 
-    def test_functions_are_those_of_the_package(self):
+    def test_functions_match_the_package(self):
         functions = self.functions(self.tree.body)
         there = {name for name in stripmine.__all__ if inspect.isroutine(getattr(stripmine, name))}
         self.assertEqual(set(functions), there)
         for name, function in functions.items():
             self.same(name, function, getattr(stripmine, name))
 
-    def test_classes_are_those_of_the_package(self):
+    def test_classes_match_the_package(self):
         classes = [it for it in self.tree.body if isinstance(it, ast.ClassDef)]
         own = {name for name in stripmine.__all__ if getattr(getattr(stripmine, name), "__module__", "") == "stripmine"}
         own = {name for name in own if inspect.isclass(getattr(stripmine, name))}

@@ -61,7 +61,7 @@ class Commands(InFolder):
                 study(**options)
         return caught.exception
 
-    def test_without_the_command_a_study_says_how_to_get_it(self):
+    def test_a_missing_command_is_explained(self):
         with mock.patch.dict(os.environ, {"PATH": str(self.folder), "STRIPMINE": ""}):
             error = self.refused("the command stripmine was not found\n.*cargo install --path")
         self.assertIn("command=", error.remedy)
@@ -70,7 +70,7 @@ class Commands(InFolder):
         self.refused("no-such-command was not found", command="no-such-command")
 
     @SHELL
-    def test_a_command_of_another_version_is_refused(self):
+    def test_other_command_versions_are_rejected(self):
         other = program(self.folder, "echo stripmine 0.0.1")
         self.refused(f"'stripmine 0.0.1'; .* needs stripmine {stripmine.__version__}\n.*cargo install", command=other)
         self.refused("is ''; this package needs", command=program(self.folder, "exit 1"))
@@ -84,13 +84,13 @@ class Commands(InFolder):
         self.assertEqual(self.scene.explain(command=command), {"arguments": "explain scene.toml --json"})
 
     @SHELL
-    def test_a_command_that_breaks_is_an_error_with_what_it_said(self):
+    def test_failing_commands_raise_their_message(self):
         for lines in ("echo broken >&2; exit 3", "echo '{\"error\": 0.5}'; echo broken >&2; exit 3", "echo '['; echo broken >&2; exit 3"):
             self.refused("failed with exit code 3: broken", command=program(self.folder, VERSION + lines))
         program(self.folder, "").write_bytes(b"\x7fELF")
         self.refused("cannot be run", command=self.folder / "command")
 
-    def test_signatures_are_those_of_the_studies(self):
+    def test_signatures_match_the_studies(self):
         for name in ("explain", "accuracy"):
             ours = list(inspect.signature(getattr(_studies, name)).parameters.values())[1:]
             shown = list(inspect.signature(getattr(stripmine.Scene, name)).parameters.values())[1:]
@@ -115,7 +115,7 @@ class Studies(InFolder):
         # The second plan uses the trials of the first.
         self.assertIn("kept from", scene.explain("compressibility", 0.1, seconds=4)["origin"])
 
-    def test_the_error_of_a_mean_falls_by_the_root_of_the_time(self):
+    def test_errors_fall_with_the_square_root(self):
         out = self.folder / "out"
         tables = stripmine.scene("hard-disks", DISCS).accuracy("compressibility", "2%", budget=6, out=out)
         self.assertEqual(set(tables), {"summary", "points", "marks", "biases", "wishes"})
@@ -134,14 +134,14 @@ class Studies(InFolder):
         self.assertIn("bias", tables["biases"])
         self.assertTrue([*out.glob("host/accuracy/*.svg")])
 
-    def test_steps_have_counts_and_words(self):
+    def test_columns_of_biases_have_types(self):
         tables = stripmine.scene("dense-gas", {"particles.count": 200}).accuracy("kinetic", budget=6, window=(0.0, 1.0))
         biases = tables["biases"]
         self.assertEqual((biases["step"].dtype, biases["pairs_of_runs"].dtype), (np.float64, np.uint64))
         self.assertTrue(set(biases["significant"]) <= {"yes", "no"})
         self.assertTrue((tables["points"]["step"] > 0).all())
 
-    def test_wrong_options_are_errors_in_the_words_of_the_command(self):
+    def test_wrong_options_raise_command_errors(self):
         scene = stripmine.scene("hard-disks", DISCS)
         for options, message, remedy in [
             ({"of": "presure"}, "this scene does not observe `presure`\n  help: use one of", "compressibility"),
@@ -160,7 +160,7 @@ class Studies(InFolder):
             scene.explain(window=3)
 
     @SHELL
-    def test_interrupted_trials_are_kept_and_the_command_ends(self):
+    def test_interrupted_trials_are_cached(self):
         number = self.folder / "number"
         command = program(self.folder, f'echo $$ > "{number}"; exec "{os.path.abspath(scenes.command())}" "$@"')
 
@@ -184,7 +184,7 @@ class Studies(InFolder):
             os.kill(int(number.read_text()), 0)
         self.assertTrue(trials())
 
-    def test_warnings_of_the_command_are_warnings_of_python(self):
+    def test_command_warnings_become_python_warnings(self):
         (self.folder / "stripmine").touch()
         with self.assertWarnsRegex(UserWarning, "trials are not cached"):
             stripmine.scene("hard-disks", DISCS).explain("compressibility", "5%", seconds=1)

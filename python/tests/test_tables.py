@@ -31,7 +31,7 @@ class Tables(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "no column of this table"):
             table["virail"]
 
-    def test_averages_are_those_of_the_summary(self):
+    def test_averages_match_the_summary(self):
         averages = self.run_of_discs.averages().to_dict()
         summary = self.run_of_discs.summary()["averages"]["quantities"]
         for at, theirs in enumerate(summary):
@@ -40,7 +40,7 @@ class Tables(unittest.TestCase):
             for name in ("mean", "bar", "standard_error", "correlation_time", "independent_samples"):
                 self.assertEqual(np.nan_to_num(averages[name][at]), theirs.get(name, 0.0), (theirs["quantity"], name))
 
-    def test_counts_are_those_of_the_printed_text(self):
+    def test_counts_match_the_printed_program(self):
         overrides = {"integrator.values": 5, "law.friction": 0.5, "law.normal_damping": 0.1, "law.shear_damping": 0.1}
         counts = stripmine.scene("dense-gas-printed", overrides).counts()
         self.assertEqual(counts.columns[:4], ["part", "section", "length", "n"])
@@ -90,7 +90,7 @@ class Tables(unittest.TestCase):
 
 
 class Lists(unittest.TestCase):
-    def test_lists_have_what_there_is(self):
+    def test_lists_are_complete(self):
         self.assertIn("hard-disks", stripmine.presets())
         names = [method["name"] for method in stripmine.methods()]
         self.assertEqual(names, ["lattice-md", "hard-disks", "langevin", "nbody"])
@@ -100,14 +100,14 @@ class Lists(unittest.TestCase):
             stripmine.keys("hard-discs")
 
     @unittest.skipUnless(scenes.command(), "there is no command `stripmine`: set STRIPMINE, or the path")
-    def test_keys_are_those_of_the_command(self):
+    def test_keys_match_the_command(self):
         for method in stripmine.methods():
             said = subprocess.run(
                 [scenes.command(), "scene", "keys", method["name"], "--json"], check=True, capture_output=True
             )
             self.assertEqual(stripmine.keys(method["name"]), json.loads(said.stdout))
 
-    def test_every_preset_is_a_scene_that_is_read_again(self):
+    def test_presets_survive_writing(self):
         for name in stripmine.presets():
             with self.subTest(name):
                 scene = stripmine.scene(name)
@@ -116,7 +116,7 @@ class Lists(unittest.TestCase):
                 count, dimensions = scene.particles().positions.shape
                 self.assertEqual((len(scene.particles()), dimensions in (2, 3)), (count, True))
 
-    def test_a_check_says_what_to_expect(self):
+    def test_checks_report_expectations(self):
         said = stripmine.scene("pipe-small").check()
         self.assertEqual((said["scene"], said["method"]), ("pipe-small", "lattice-md"))
         self.assertGreater(said["memory"]["needed"], 0)

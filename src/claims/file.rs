@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn claims_that_cannot_be_judged_are_refused_with_their_line() {
+    fn invalid_claims_are_refused_with_line() {
         for (from, to, named) in [
             ("item =", "itme =", "itme"),
             ("relation = \"equals\"", "relation = \"equal\"", "at-least"),

@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn values_that_are_not_there_are_refused_with_the_names_that_are() {
+    fn missing_values_are_refused_with_known_names() {
         let limit = "expected = 1\nrelation = \"equals\"";
         for (value, named) in [
             ("value = \"u.x\"\n", "t"),

@@ -372,7 +372,7 @@ mod tests {
     use stripmine_physics::method::METHODS;
 
     #[test]
-    fn every_option_of_a_bench_has_its_help() {
+    fn every_bench_option_has_help() {
         let names: BTreeSet<&str> = options(METHODS).map(|option| option.name).collect();
         assert_eq!(names, OPTIONS.iter().map(|(name, ..)| *name).collect());
     }

@@ -184,7 +184,7 @@ mod tests {
     use stripmine_physics::method::METHODS;
 
     #[test]
-    fn every_example_is_a_command_and_every_verb_has_one() {
+    fn examples_parse_and_cover_every_verb() {
         for (_, examples) in EXAMPLES {
             for (example, _) in *examples {
                 let understood = command(METHODS).try_get_matches_from(example.split(' '));

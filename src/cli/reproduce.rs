@@ -284,7 +284,7 @@ mod tests {
 
     /// README promises five minutes and 2 GB for `reproduce` on two cores. Items run one after the other, so the largest memory counts.
     #[test]
-    fn the_default_items_take_five_minutes_and_two_gigabytes() {
+    fn default_items_take_five_minutes() {
         let default: Vec<&Item> = items_of(METHODS).filter(|item| item.is_default()).collect();
         assert!(default.len() >= 19, "{} items", default.len());
         let seconds: f64 = default.iter().map(|item| item.seconds(Size::Full)).sum();
@@ -296,7 +296,7 @@ mod tests {
 
     /// Stated costs match the times recorded in the committed report within a factor of 1.5 and one second.
     #[test]
-    fn stated_costs_are_near_those_of_the_committed_report() {
+    fn stated_costs_match_the_committed_report() {
         let folder = Folder::of_another(&Path::new(env!("CARGO_MANIFEST_DIR")).join("reports"));
         for item in items_of(METHODS) {
             let Some(made) = folder.provenance(item.name).unwrap() else { continue };
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_interrupted_goes_on_and_what_was_finished_begins_again() {
+    fn interrupted_jobs_resume_and_finished_jobs_restart() {
         assert_eq!(unfinished(vec!["a", "b", "c"], &[true, false, true]), ["b"]);
         for all in [true, false] {
             assert_eq!(unfinished(vec!["a", "b"], &[all; 2]), ["a", "b"]);
@@ -324,13 +324,13 @@ mod tests {
     }
 
     #[test]
-    fn items_are_dealt_out_by_their_time() {
+    fn items_are_distributed_by_duration() {
         let dealt = dealt_out(vec![1, 5, 2, 4, 3], 2, |seconds| f64::from(*seconds));
         assert_eq!(dealt, [vec![5, 2, 1], vec![4, 3]]);
     }
 
     #[test]
-    fn times_are_for_readers() {
+    fn durations_are_rounded_for_reading() {
         assert_eq!([0.1, 42.4, 99.0, 121.0].map(lasting), ["a second", "42 s", "99 s", "3 min"]);
     }
 }

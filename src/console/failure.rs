@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn advice_stands_apart_from_the_message() {
+    fn advice_is_separate_from_the_message() {
         let failure = Failure::from(InTheWay).report();
         assert_eq!((failure.kind, failure.remedy.is_some()), ("usage", true));
         assert_eq!(failure.place, Some(FilePlace::at(Path::new("a.run"))));

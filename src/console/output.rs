@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_time_is_promised_before_any_is_known() {
+    fn remaining_time_is_shown_once_known() {
         let [short, long] = [1, 10].map(Duration::from_secs);
         assert_eq!(remaining(0.5, short, long), "");
         assert_eq!(remaining(0.01, long, long), "");

@@ -225,7 +225,7 @@ mod tests {
 
     /// Two cases of one scene count the same work and operations, whatever their times.
     #[test]
-    fn readings_count_what_was_done() {
+    fn readings_count_work_and_operations() {
         let discs = Overrides::new().set(&COUNT, 64_u64).set(&PACKING_FRACTION, 0.3);
         let events = |name: &str| Case::events("hard-disks", &discs, 50, 200).label("name", name);
         let steps = Case::steps("bench", &discs, 2, 3).label("name", "steps").on_threads(2);
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_is_refused_names_its_case() {
+    fn a_rejected_scene_names_its_case() {
         let none = Overrides::new().set(&COUNT, 0_u64);
         let case = Case::steps("bench", &none, 0, 1).label("discs", 0);
         let failure = rates(&Lab::here(&|_| ()), &[case]).unwrap_err();

@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn every_defect_is_named_with_file_and_entry() {
+    fn invalid_entries_are_reported_with_file() {
         let divide = "steps = { divide = 1, multiply = 3 }";
         let default = r#"default = { value = 6, provenance = "assumed", note = "why not" }"#;
         for (old, new, expected) in [
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn defects_of_the_grammar_are_shown_with_their_line() {
+    fn syntax_errors_are_reported_with_line() {
         for (old, new, expected) in [
             ("title = ", "name = ", "unknown field `name`"),
             ("title = \"A machine\"", "", "missing field `title`"),
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn expansions_that_run_in_a_circle_are_refused() {
+    fn circular_expansions_are_refused() {
         let circle = r#"
             [expansions.multiply]
             steps = { add = 1, divide = 2 }
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_class_that_is_expanded_away_needs_no_start_up() {
+    fn fully_expanded_classes_need_no_start_up() {
         let own_start_ups: String = OpClass::ALL
             .iter()
             .filter(|&&class| !matches!(class, OpClass::Divide | OpClass::SquareRoot))

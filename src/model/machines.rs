@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn the_paper_machine_has_one_start_up_and_lacks_nothing() {
+    fn paper_machine_has_one_start_up() {
         let machine = preset("paper").unwrap();
         assert!(OpClass::ALL.iter().all(|&class| machine.start_up(class) == 20.0));
         assert!(OpClass::ALL.iter().all(|&class| !machine.expansions.contains_key(class.name())));
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_machine_is_answered_with_the_known_names() {
+    fn unknown_machine_error_lists_known_names() {
         let error = preset("cray-3").unwrap_err();
         assert_eq!(
             error.to_string(),

@@ -141,7 +141,7 @@ fn a_chart_has_panels_and_lines() {
 }
 
 #[test]
-fn a_template_with_a_fault_names_the_line_and_what_exists() {
+fn template_errors_name_line_and_alternatives() {
     for (from, to, line, named) in [
         ("errors[0].error", "errors[0].eror", 22, "it has scheme, steps, error"),
         ("errors|length }} runs", "erors|length }} runs", 5, "errors"),

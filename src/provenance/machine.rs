@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_machine_is_described_as_far_as_it_is_known() {
+    fn unreported_machine_properties_are_left_out() {
         let machine = Machine {
             processor: "A, linux x86_64".into(),
             model: Some("family 25 model 17 stepping 1".into()),

@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_command_line_is_recorded_whole_and_a_shell_takes_it_again() {
+    fn recorded_command_lines_can_be_repeated() {
         let given = ["/opt/bin/stripmine", "reproduce", "--only", "mask", "--out", "my reports", "it's", ""];
         assert_eq!(
             command_line(&given.map(OsString::from)),

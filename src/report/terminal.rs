@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn long_messages_are_broken_at_blanks_and_short_ones_stay() {
+    fn long_messages_are_wrapped_at_blanks() {
         let message = "error: a scene that cannot be\n  expected: dt below 0.0083249 (time), or slower discs\n    ^ here";
         let text = fitted_within(message, Some(30));
         assert!(text.lines().all(|line| line.chars().count() <= 30), "{text}");
@@ -154,7 +154,7 @@ mod tests {
 
     /// At any width every number and every word of a heading is unbroken, and no line is wider than requested.
     #[test]
-    fn nothing_is_broken_at_any_width() {
+    fn no_word_is_broken_at_any_width() {
         for width in [20, 30, 45, 60, 80, 100, 120] {
             let text = render_within(&table(), Some(width));
             for whole in ["1\u{202f}234\u{202f}567", "123\u{202f}456.789", "damped-euler", "processor"] {
@@ -168,12 +168,12 @@ mod tests {
     }
 
     #[test]
-    fn a_terminal_without_columns_is_a_page_wide() {
+    fn a_terminal_without_columns_has_the_default_width() {
         assert_eq!([0, 1, 20, 79, 300].map(columns), [PAGE, NARROWEST, 20, 79, 300]);
     }
 
     #[test]
-    fn rows_become_records_where_the_table_does_not_fit() {
+    fn rows_of_wide_tables_become_records() {
         let text = render_within(&table(), Some(30));
         assert!(
             text.contains("  integrator: damped-euler\n") && text.contains("\n\n  integrator: yoshida-8")

@@ -237,7 +237,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn committed_results_are_refused_to_a_source_that_is_not_committed() {
+    fn uncommitted_builds_cannot_overwrite_committed_results() {
         let checkout = tempfile::tempdir().unwrap();
         let git = |arguments: &[&str]| {
             let done = Command::new("git").arg("-C").arg(checkout.path()).args(arguments).output().unwrap();

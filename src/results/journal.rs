@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn finished_runs_are_not_made_again_and_a_cut_line_is_dropped() {
+    fn finished_runs_are_recalled() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
         let first = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn runs_of_another_scene_and_files_of_others_are_refused() {
+    fn journals_of_other_studies_are_rejected() {
         let folder = tempfile::tempdir().unwrap();
         Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         let other = Journal::open(folder.path(), &identity("87654321"), None).err().unwrap();
@@ -342,7 +342,7 @@ mod tests {
 
     /// A line can have a correct checksum and an impossible value.
     #[test]
-    fn values_that_do_not_fit_are_measured_again() {
+    fn impossible_values_are_measured_again() {
         let folder = tempfile::tempdir().unwrap();
         let open = || Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         assert_eq!(run(&open(), "a", 20_000_001), 20_000_001);
@@ -355,7 +355,7 @@ mod tests {
 
     /// The checksum covers every part of a line, and lines of another journal are rejected.
     #[test]
-    fn lines_that_were_changed_are_measured_again() {
+    fn damaged_lines_are_measured_again() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
         let first = Journal::open(folder.path(), &identity("12345678"), None).unwrap();
@@ -386,7 +386,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_pipe_is_no_journal() {
+    fn pipes_are_rejected_as_journals() {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join(NAME);
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());

@@ -95,7 +95,7 @@ mod tests {
 
     /// Results are in order, every fraction is reported once, and an error ends the work.
     #[test]
-    fn cases_come_back_in_their_order() {
+    fn results_are_in_the_order_of_cases() {
         let heard = Mutex::new(vec![]);
         let progress = |share: f64| heard.lock().unwrap().push(share);
         let meter = Meter::new(8.0, &progress);

@@ -154,7 +154,7 @@ mod tests {
 
     /// If the first rank ends early, the others do not wait forever.
     #[test]
-    fn the_end_of_the_first_rank_is_the_end_of_all() {
+    fn the_first_rank_ends_all() {
         let folder = tempfile::tempdir().unwrap();
         let (found, _) = study(folder.path(), 3, true);
         assert_eq!(found, vec![None; 3]);

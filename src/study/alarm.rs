@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_of_a_run_rise_above_one_on_either_side_of_a_limit() {
+    fn exceeded_limits_have_shares_above_one() {
         let share = |value: f64, limit: f64| {
             Alarm::of_run(&RunWarning { check: "c", value, limit, message: String::new() }).share
         };

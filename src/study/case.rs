@@ -129,7 +129,7 @@ mod tests {
     /// A scene and its start file may change or vanish once they are read: every later preparation uses the original discs, and so does a derived
     /// scene.
     #[test]
-    fn a_scene_and_its_start_file_are_read_once() {
+    fn scene_and_start_file_are_read_once() {
         let folder = tempfile::tempdir().unwrap();
         let [scene, start] = ["scene.toml", "start.xyz"].map(|name| folder.path().join(name));
         let (gas, _) = load("hard-disks", &["particles.count=20".to_owned()], METHODS).unwrap();

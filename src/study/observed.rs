@@ -86,7 +86,7 @@ mod tests {
     use stripmine_physics::method::{Balance, METHODS};
 
     #[test]
-    fn trials_that_name_what_is_not_observed_are_refused() {
+    fn trials_naming_unobserved_quantities_are_refused() {
         for method in METHODS {
             let Some(trials) = method.trials else { continue };
             let observed = Observed::of(trials, method.quantities).unwrap();

@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_part_that_does_not_gain_is_amdahls() {
+    fn serial_part_follows_amdahls_law() {
         let time = |serial: f64, threads: f64| 7.0 * (serial + (1.0 - serial) / threads);
         for part in [0.0, 0.1, 1.0] {
             for counts in [[1, 2], [1, 16], [2, 8]] {

@@ -211,13 +211,13 @@ const FLUIDS: usize = 8;
 
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
-fn bars_of_95_percent_hold_the_truth_of_fluids() {
+fn error_bars_cover_the_truth_of_fluids() {
     hold_the_truth(&SYSTEMS[..FLUIDS]);
 }
 
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
-fn bars_of_95_percent_hold_the_truth_of_grains_and_bodies() {
+fn error_bars_cover_the_truth_of_grains_bodies() {
     hold_the_truth(&SYSTEMS[FLUIDS..]);
 }
 
@@ -305,7 +305,7 @@ fn hold_the_truth(systems: &[System]) {
 /// Collision rates of runs with different energies: a run's error bar is for its own energy, a join's for all energies.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
-fn joined_bars_hold_the_mean_over_energies() {
+fn joined_bars_cover_the_mean_over_energies() {
     let system = System {
         preset: "hard-disks",
         overrides: &["particles.count=48", "run.events=5000", "run.thermo_every=0.1"],
@@ -332,7 +332,7 @@ const RUNS: u32 = 160;
 /// Runs that end by `until` end within 30 % of the time the target takes, as computed from the scatter over their seeds.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
-fn until_ends_where_the_target_is_reached() {
+fn until_ends_when_the_target_is_reached() {
     let folder = tempfile::tempdir().unwrap();
     let discs = ["hard-disks", "--set", "particles.count=100", "--set", "run.thermo_every=0.1"];
     let discs = [&discs[..], &["--set", "run.events=100000000"]].concat();
@@ -368,7 +368,7 @@ fn until_ends_where_the_target_is_reached() {
 /// Runs that end by `until` cover the truth as often as others, although each ends when its error bar happens to be short.
 #[test]
 #[ignore = "long: cargo test --release --test averages -- --ignored"]
-fn until_holds_the_truth_as_often_as_it_says() {
+fn until_covers_the_truth_at_the_nominal_rate() {
     let folder = tempfile::tempdir().unwrap();
     for error in ["8%", "4%"] {
         let target = format!("run.until={{ quantity = \"temperature\", error = \"{error}\" }}");

@@ -38,7 +38,7 @@ fn of<'a>(averages: &'a Value, name: &str) -> &'a Value {
 }
 
 #[test]
-fn a_run_ends_with_means_and_their_errors() {
+fn summary_has_means_and_their_errors() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), "a", &["--set", "run.events=20000"]);
     ends_with(&output, 0, &[]);
@@ -69,7 +69,7 @@ fn a_run_ends_with_means_and_their_errors() {
 }
 
 #[test]
-fn averages_are_the_same_in_two_sessions() {
+fn averages_do_not_depend_on_sessions() {
     let folder = tempfile::tempdir().unwrap();
     ends_with(&run(folder.path(), "whole", &["--set", "run.events=20000"]), 0, &[]);
     ends_with(&run(folder.path(), "parts", &["--set", "run.events=7777"]), 0, &[]);
@@ -78,7 +78,7 @@ fn averages_are_the_same_in_two_sessions() {
 }
 
 #[test]
-fn runs_with_seeds_of_their_own_are_joined_and_others_refused() {
+fn only_runs_with_different_seeds_are_joined() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (out, seed) in [("a", "particles.seed=1"), ("b", "particles.seed=2"), ("c", "particles.seed=1")] {
@@ -102,7 +102,7 @@ fn runs_with_seeds_of_their_own_are_joined_and_others_refused() {
 }
 
 #[test]
-fn a_run_ends_when_a_mean_is_known_well_enough() {
+fn run_until_stops_at_the_target_error() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let target = r#"run.until={ quantity = "compressibility", error = "2%" }"#;
@@ -159,7 +159,7 @@ fn seeds_make_an_ensemble() {
 
 /// Two particles in a bath that collide in some runs only: runs without a collision report no mean, and no run is left out of a join.
 #[test]
-fn what_has_not_happened_yet_is_not_known() {
+fn rare_events_give_no_mean_before_they_happen() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let pair = [
@@ -213,7 +213,7 @@ fn what_has_not_happened_yet_is_not_known() {
 
 /// Different starts with the same noise converge to one run in a bath.
 #[test]
-fn runs_with_one_noise_are_not_joined() {
+fn runs_with_the_same_noise_are_not_joined() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (out, seed, noise) in [
@@ -234,7 +234,7 @@ fn runs_with_one_noise_are_not_joined() {
 
 /// Particles that start at 50 000 times the temperature of their bath equilibrate within ten time units: the mean is that of the bath.
 #[test]
-fn a_transient_of_a_few_rows_is_cut_off() {
+fn short_transients_are_cut_off() {
     let folder = tempfile::tempdir().unwrap();
     for every in ["60", "20"] {
         let hot =
@@ -259,7 +259,7 @@ fn a_transient_of_a_few_rows_is_cut_off() {
 
 /// A single disc in a periodic box moves with the mean motion, so its temperature is undefined.
 #[test]
-fn what_is_not_defined_is_said_in_words() {
+fn undefined_quantities_are_reported_in_words() {
     let folder = tempfile::tempdir().unwrap();
     let one = ["run", "hard-disks", "--set", "particles.count=1", "--set", "particles.generate=random"];
     let more = ["--set", "domain.sides=[20.0, 20.0]", "--set", "run.time=100", "--out", "one"];

@@ -69,7 +69,7 @@ fn comes_to_an_end(prepared: &Prepared, now: Clock, what: &str) {
 }
 
 #[test]
-fn keys_at_the_ends_of_the_number_format_are_refused_or_end() {
+fn extreme_key_values_are_refused_or_finish() {
     let [mut refused, mut ran] = [0; 2];
     for &(preset, overrides) in SCENES {
         let (_, entry) = load(preset, &[], METHODS).unwrap();
@@ -97,7 +97,7 @@ fn keys_at_the_ends_of_the_number_format_are_refused_or_end() {
 
 /// The message names the key, its value and the bound.
 #[test]
-fn runs_without_an_end_are_refused_with_the_bound() {
+fn endless_runs_are_refused_with_the_bound() {
     for (preset, sets, words) in [
         (
             "hot-floor",

@@ -98,7 +98,7 @@ fn taken_up(prepared: &Prepared, clock: Clock, snapshot: Snapshot) -> bool {
 }
 
 #[test]
-fn forged_snapshots_are_refused_or_gone_on_with() {
+fn forged_snapshots_are_refused_or_resumed() {
     for &(preset, overrides) in SCENES {
         let sets: Vec<String> = overrides.iter().map(|set| (*set).to_owned()).collect();
         let what = format!("{preset} {}", overrides.join(" "));

@@ -20,7 +20,7 @@ fn words(scene: &str, out: &Path, more: &[&str]) -> String {
 /// Z of a gas that cools to about a half within a row, compared with sums over rows eighty times as close, whose temperature is the mean of
 /// both ends; between the times 1 and 5 it is 1.77 (theory: 1 + (1 + e)/2 (Z of elastic discs − 1) = 1.75).
 #[test]
-fn rows_of_a_cooling_gas_are_means_over_their_time() {
+fn cooling_gas_rows_average_over_their_interval() {
     let folder = tempfile::tempdir().unwrap();
     let rows = |every: &str| {
         let out = folder.path().join(every);
@@ -88,7 +88,7 @@ fn between_walls_all_degrees_of_freedom_count() {
 
 /// One disc over a wall of kT = 2 has that temperature along both axes, to four standard errors. In a periodic box it has none.
 #[test]
-fn a_single_disc_has_a_temperature_where_something_is_thermal() {
+fn single_disc_over_a_thermal_wall_has_temperature() {
     let folder = tempfile::tempdir().unwrap();
     let scene = listed(
         folder.path(),
@@ -115,7 +115,7 @@ fn a_single_disc_has_a_temperature_where_something_is_thermal() {
 
 /// Error of the energy is rounding if energy is conserved, lost in collisions, supplied by a hot or a moving floor, and under gravity.
 #[test]
-fn the_error_of_the_energy_is_rounding_in_every_scene() {
+fn energy_error_is_rounding_in_every_scene() {
     let folder = tempfile::tempdir().unwrap();
     let falling = "sides = [10.0, 10.0]\nperiodic = [true, false]\ngravity = [0.0, -1.0]";
     let slanted =
@@ -161,7 +161,7 @@ fn the_error_of_the_energy_is_rounding_in_every_scene() {
 
 /// Two discs of mass 1 collide head on at speed 1 with e = 1/2 and lose 1 − e² of the energy of 1.
 #[test]
-fn work_is_what_collisions_take() {
+fn work_is_the_energy_lost_in_collisions() {
     let folder = tempfile::tempdir().unwrap();
     let scene = listed(
         folder.path(),
@@ -183,7 +183,7 @@ fn work_is_what_collisions_take() {
 /// Discs of a crystal that overlap by the precision of their positions are shrunk by as much, with a note; deeper overlaps are refused with
 /// their size.
 #[test]
-fn overlaps_of_the_last_digit_are_taken() {
+fn overlaps_of_rounding_size_are_accepted() {
     let folder = tempfile::tempdir().unwrap();
     let begin_at = |by: f64, beyond: f64| {
         let positions = format!("[[2.0, 2.0], [{:?}, 2.0], [9.5, {:?}]]", 3.0 - by, 9.5 + beyond);
@@ -229,7 +229,7 @@ fn overlaps_of_the_last_digit_are_taken() {
 /// Over a hot wall the temperature fluctuates. Mean compressibilities over rows of 1/2, 5 or 30 equal all impulses over the integral of the
 /// temperature, here from rows a tenth apart. The mean of 3000 independent times is known to 0.3 %; the four agree far better.
 #[test]
-fn the_mean_compressibility_does_not_depend_on_the_rows() {
+fn mean_compressibility_does_not_depend_on_rows() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("hot.toml");
     fs::write(

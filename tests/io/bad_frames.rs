@@ -189,7 +189,7 @@ fn error_of(bytes: &[u8], which: Which) -> ReadError {
 }
 
 #[test]
-fn every_mistake_is_named_with_its_place() {
+fn every_mistake_is_reported_with_its_location() {
     for (bad, expected) in CASES {
         let expected = expected.replace("ROW", ROW).replace("ADD", ADD).replace("FMT", FMT);
         let bad = write_out(bad);
@@ -201,13 +201,13 @@ fn every_mistake_is_named_with_its_place() {
 
 /// The first frame is valid, but the line after it does not begin a frame.
 #[test]
-fn a_count_that_is_too_small_is_seen_with_the_first_frame_too() {
+fn too_small_counts_are_found_in_first_frames() {
     let error = error_of(write_out("1\nLATTICE PROPERTIES\nROW\nROW\n").as_bytes(), Which::First);
     assert!(error.to_string().contains("bad.xyz:4: expected the number of discs"), "{error}");
 }
 
 #[test]
-fn bytes_that_are_no_text_are_refused_where_they_stand() {
+fn invalid_utf8_is_refused_with_its_location() {
     let whole = text(&frame(0));
     for (line, column, word) in [(1, 1, "2\n"), (2, 1, "Lattice"), (3, 4, "0.30000000000000004"), (4, 1, "W")]
     {
@@ -220,7 +220,7 @@ fn bytes_that_are_no_text_are_refused_where_they_stand() {
 }
 
 #[test]
-fn all_mistakes_are_found_but_only_the_first_are_listed() {
+fn only_the_first_mistakes_are_listed() {
     let rows = (1..=100).map(|id| format!("Si 1 2 0 {id} 0 0 0 -{id} 1 0 0 0\n")).collect::<String>();
     let error = error_of(write_out(&format!("100\nLATTICE PROPERTIES\n{rows}")).as_bytes(), Which::First);
     assert_eq!((error.mistakes.len(), error.more), (20, 80));
@@ -230,7 +230,7 @@ fn all_mistakes_are_found_but_only_the_first_are_listed() {
 }
 
 #[test]
-fn a_wrong_frame_ends_the_sequence() {
+fn invalid_frame_ends_the_sequence() {
     let text = [text(&frame(0)), text(&frame(1)).replace(" 0.5 ", " -0.5 "), text(&frame(2))].concat();
     let frames: Vec<_> = Frames::new(text.as_bytes(), "text").collect();
     assert!(frames.len() == 2 && frames[0].is_ok());
@@ -238,7 +238,7 @@ fn a_wrong_frame_ends_the_sequence() {
 }
 
 #[test]
-fn a_missing_file_is_a_matter_of_the_system() {
+fn missing_file_is_a_system_error() {
     let error = read("/no/such/file.xyz", Which::Last).unwrap_err();
     assert_eq!(error.system().unwrap().kind(), std::io::ErrorKind::NotFound);
     assert!(error.to_string().starts_with("/no/such/file.xyz: cannot be read: "));

@@ -46,7 +46,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn everything_comes_back() {
+fn checkpoint_contents_are_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("any.name");
     for checkpoint in [Checkpoint::default(), checkpoint(3)] {
@@ -60,7 +60,7 @@ fn everything_comes_back() {
 
 /// Signalling and other NaNs, negative zero, denormals: bits, not values, are kept.
 #[test]
-fn all_bits_of_floats_come_back() {
+fn float_bits_are_read_back() {
     let wide = [0x7ff0_0000_0000_0001, 0xfff8_dead_beef_cafe, 1 << 63, 1, u64::MAX, 0x7ff0_0000_0000_0000];
     let narrow = [0x7f80_0001, 0xffc0_beef, 1 << 31, 1, u32::MAX];
     let many: Vec<f64> = (0..20_000).map(|i| f64::from(i).sqrt()).collect();
@@ -88,7 +88,7 @@ fn all_bits_of_floats_come_back() {
 }
 
 #[test]
-fn replacing_keeps_the_one_before_and_nothing_else() {
+fn replacing_keeps_only_the_previous_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     let older = format!("{NAME}.previous");
@@ -104,7 +104,7 @@ fn replacing_keeps_the_one_before_and_nothing_else() {
 
 /// A kill after the newest checkpoint got its second name and before the new one replaced it.
 #[test]
-fn a_kill_between_the_two_renamings_loses_nothing() {
+fn kill_between_both_renames_loses_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     checkpoint(1).write_atomically(&path).unwrap();
@@ -134,7 +134,7 @@ fn no_link_is_followed() {
 }
 
 #[test]
-fn a_write_that_fails_leaves_the_old_one() {
+fn failed_write_keeps_the_old_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     checkpoint(1).write_atomically(&path).unwrap();
@@ -152,7 +152,7 @@ fn a_write_that_fails_leaves_the_old_one() {
 }
 
 #[test]
-fn the_latest_of_a_folder_is_the_newest_that_is_there() {
+fn newest_existing_checkpoint_is_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     assert_eq!(read_latest(folder.path()).unwrap(), None);
@@ -166,7 +166,7 @@ fn the_latest_of_a_folder_is_the_newest_that_is_there() {
 }
 
 #[test]
-fn a_corrupt_newest_is_named_and_the_kept_one_offered() {
+fn corrupt_checkpoint_error_offers_the_previous_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(NAME);
     let (newest, older) = (path.display(), previous(&path));

@@ -106,7 +106,7 @@ fn bytes_after_the_end_are_refused() {
 }
 
 #[test]
-fn other_files_and_other_versions_are_told_apart() {
+fn foreign_files_and_other_versions_are_distinguished() {
     let reader = Reader::new();
     for other in [&b"step,time\n"[..], &[0; 100], b"\x93NUMPY\x01\x00 and so on, long enough for a header"] {
         assert!(matches!(reader.error(other).fault, Fault::Magic));
@@ -138,7 +138,7 @@ fn absurd_lengths_are_refused() {
 }
 
 #[test]
-fn content_without_meaning_is_refused() {
+fn meaningless_contents_are_refused() {
     let (whole, reader) = (bytes(&checkpoint(3)), Reader::new());
     let starts = sections(&whole);
     let (state, column, second) = (starts[0], starts[1], starts[2]);
@@ -166,7 +166,7 @@ fn content_without_meaning_is_refused() {
 
 /// Any damage, with valid checksums or not, gives an error or a checkpoint, never a panic.
 #[test]
-fn no_bytes_make_the_reader_panic() {
+fn checkpoint_reader_never_panics() {
     let (whole, folder) = (bytes(&checkpoint(3)), tempfile::tempdir().unwrap());
     let (starts, path) = (sections(&whole), folder.path().join("any"));
     let mut random = Random(5);

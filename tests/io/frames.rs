@@ -28,7 +28,7 @@ fn bits(frame: &Frame) -> Vec<u64> {
 
 /// The format as documented in the help of the command.
 #[test]
-fn a_frame_is_written_as_promised() {
+fn frame_is_written_as_documented() {
     let expected = "2
 Lattice=\"3.3333333333333335 0.0 0.0 0.0 8.0 0.0 0.0 0.0 1.0\" Origin=\"-1.5 0.1 -0.5\" pbc=\"T F F\" \
 Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3:masses:R:1:momenta:R:3 Time=0.4 step=4 seed=18446744073709551615
@@ -70,7 +70,7 @@ fn every_program_finds_its_columns() {
 }
 
 #[test]
-fn every_bit_comes_back() {
+fn every_bit_of_a_frame_is_read_back() {
     let mut random = Random(1);
     let mut any = || loop {
         let number = f64::from_bits(((random.below(1 << 32) as u64) << 32) | random.below(1 << 32) as u64);
@@ -97,7 +97,7 @@ fn every_bit_comes_back() {
 }
 
 #[test]
-fn the_first_the_last_or_all_frames_are_read() {
+fn first_last_or_all_frames_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("trajectory.xyz");
     let all: Vec<Frame> = (0..3).map(frame).collect();
@@ -109,7 +109,7 @@ fn the_first_the_last_or_all_frames_are_read() {
 
 /// Columns in any order, unknown columns, unknown keys, other line ends.
 #[test]
-fn columns_stand_in_any_order_beside_others() {
+fn columns_are_read_in_any_order() {
     let ours = "1\nProperties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3 \
                 Lattice=\"4 0 0 0 5 0 0 0 1\" Time=2\nW 1 2 0 9 3 4 0 0.5 6 0 0 7";
     let other = "\r\n1\r\nfrozen config_type = \"a \\\"b\\\" c\" Time=2 stress={{1 0} {0 1}} \
@@ -123,7 +123,7 @@ fn columns_stand_in_any_order_beside_others() {
 }
 
 #[test]
-fn boundaries_come_in_all_spellings() {
+fn all_spellings_of_boundaries_are_read() {
     let spellings = [
         ("", None),
         ("pbc=\"F T F\"", Some([false, true])),
@@ -141,13 +141,13 @@ fn boundaries_come_in_all_spellings() {
 
 /// A file without species, as the documentation of start files allows.
 #[test]
-fn without_species_all_are_grains() {
+fn particles_without_species_are_grains() {
     let text = text(&frame(0)).replace("species:S:1:", "").replace("\nSi ", "\n").replace("\nW ", "\n");
     assert_eq!(frames(&text).unwrap()[0].particles.grain_count(), 2);
 }
 
 #[test]
-fn grains_come_before_wall_discs() {
+fn grains_are_sorted_before_wall_discs() {
     let text = text(&frame(0));
     let lines: Vec<&str> = text.lines().collect();
     let swapped = [lines[0], lines[1], lines[3], lines[2]].join("\n");
@@ -207,7 +207,7 @@ fn no_bytes_make_the_reader_panic() {
 
 /// Bodies in space have no box, and a depth; they are read back to the bit on request, and rejected otherwise.
 #[test]
-fn space_without_a_box_is_read_back() {
+fn bodies_without_a_box_are_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("space.xyz");
     let text = "1\npbc=\"F F F\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3 Time=0.5 step=9\n\

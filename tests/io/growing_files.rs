@@ -67,7 +67,7 @@ fn table(path: &Path, marked: usize, steps: &[u64]) -> Mark {
 
 /// A run that is interrupted and resumed leaves the same bytes as an uninterrupted one, whatever follows the mark.
 #[test]
-fn a_resumed_table_is_the_table_of_one_run() {
+fn resumed_table_equals_an_uninterrupted_one() {
     let (_folder, path) = folder_and("thermo.csv");
     table(&path, 0, &[0, 10, 20, 30, 40]);
     let whole = fs::read_to_string(&path).unwrap();
@@ -87,7 +87,7 @@ fn a_resumed_table_is_the_table_of_one_run() {
 
 /// Bytes before the mark must still be there: missing and changed bytes are refused, and the file is not changed.
 #[test]
-fn what_is_missing_or_changed_before_the_mark_is_refused() {
+fn table_damage_before_the_mark_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
     let mark = table(&path, 3, &[0, 10, 20, 30]);
     let whole = fs::read(&path).unwrap();
@@ -113,7 +113,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
 }
 
 #[test]
-fn a_table_of_other_columns_is_refused() {
+fn table_with_other_columns_is_refused() {
     let (_folder, path) = folder_and("thermo.csv");
     let mark = table(&path, 1, &[0, 10]);
     let error = resumed(&path, ["time", "heat"], mark).unwrap_err();
@@ -135,7 +135,7 @@ fn a_row_of_another_width_is_refused() {
 
 /// Frames that are torn anywhere after the mark.
 #[test]
-fn resumed_frames_are_those_of_one_run() {
+fn resumed_frames_equal_uninterrupted_ones() {
     let (_folder, path) = folder_and("trajectory.xyz");
     let all = [0, 5, 10].map(frame);
     let whole: String = all.iter().map(text).collect();
@@ -157,7 +157,7 @@ fn resumed_frames_are_those_of_one_run() {
 /// No existing file is overwritten, and no link is followed.
 #[cfg(unix)]
 #[test]
-fn neither_files_nor_links_are_written_over() {
+fn existing_files_and_links_are_not_overwritten() {
     let (folder, path) = folder_and("trajectory.xyz");
     let thesis = folder.path().join("thesis.tex");
     fs::write(&thesis, "whole").unwrap();
@@ -173,7 +173,7 @@ fn neither_files_nor_links_are_written_over() {
 /// Changes by others while the file is written are noticed when it is synced to disk.
 #[cfg(unix)]
 #[test]
-fn a_file_removed_replaced_or_changed_meanwhile_is_noticed() {
+fn files_changed_by_others_are_noticed() {
     let (folder, path) = folder_and("trajectory.xyz");
     let spoil: [&dyn Fn(&Path); 4] = [
         &|path| fs::remove_file(path).unwrap(),

@@ -94,7 +94,7 @@ fn written(path: &Path, of: fn(u64) -> LoggedFrame, count: u64) -> (Vec<Vec<u8>>
 }
 
 #[test]
-fn frames_come_back_by_their_numbers() {
+fn frames_are_read_by_number() {
     let (_folder, path) = folder_and_path();
     for of in [plane, space] {
         written(&path, of, MANY);
@@ -112,7 +112,7 @@ fn frames_come_back_by_their_numbers() {
 
 /// Other programs require all particles inside the box: a box without a ceiling is doubled until it holds them, in that frame only.
 #[test]
-fn every_disc_is_in_the_box() {
+fn every_disc_is_inside_the_box() {
     let (_folder, path) = folder_and_path();
     let high = |step: u64| {
         let mut frame = Frame::clone(&plane(step).frame);
@@ -133,7 +133,7 @@ fn every_disc_is_in_the_box() {
 /// Readers of the schema replace a missing chunk by that of the first frame if it has as many rows. Only chunks that differ from the
 /// first frame are written.
 #[test]
-fn what_stays_as_it_was_is_written_once() {
+fn unchanged_chunks_are_written_once() {
     let (_folder, path) = folder_and_path();
     let (_, marks) = written(&path, plane, 60);
     let lengths: Vec<u64> = marks.windows(2).map(|two| two[1].bytes - two[0].bytes).collect();
@@ -145,7 +145,7 @@ fn what_stays_as_it_was_is_written_once() {
 
 /// From every mark, whatever was written after it and wherever the process was killed: the bytes of a run that was never stopped.
 #[test]
-fn a_resumed_trajectory_is_that_of_one_run() {
+fn resumed_trajectory_equals_an_uninterrupted_one() {
     let (_folder, path) = folder_and_path();
     let (grown, marks) = written(&path, plane, MANY);
     let whole = &grown[MANY as usize];
@@ -172,7 +172,7 @@ fn a_resumed_trajectory_is_that_of_one_run() {
 
 /// Killed at any byte, the file consists of whole frames: all of them, or all but the last.
 #[test]
-fn a_killed_trajectory_is_of_whole_frames() {
+fn killed_trajectory_has_whole_frames() {
     let (_folder, path) = folder_and_path();
     // Includes the frame that makes the index move for the first time.
     let (grown, _) = written(&path, plane, MANY);
@@ -242,7 +242,7 @@ fn what_is_missing_or_changed_before_the_mark_is_refused() {
 
 /// Damaged and foreign files are refused with the location of the mistake.
 #[test]
-fn other_files_are_refused_with_their_place() {
+fn damaged_files_are_refused_with_the_location() {
     let (_folder, path) = folder_and_path();
     let whole = written(&path, plane, 4).0.swap_remove(4);
     let index = u64::from_le_bytes(whole[8..16].try_into().unwrap()) as usize;
@@ -315,7 +315,7 @@ fn other_files_are_refused_with_their_place() {
 /// In a file whose index has moved, a change of any byte up to the end of the last entry makes resumption fail. The unused rest of the
 /// index is written again.
 #[test]
-fn damage_of_a_grown_index_never_passes() {
+fn damage_of_a_moved_index_is_refused() {
     let (_folder, path) = folder_and_path();
     // With so many quantities the index moves in the third frame.
     let header = logging((0..400).map(|number| &*format!("q{number}").leak()).collect());

@@ -43,7 +43,7 @@ fn lines(path: &Path) -> usize {
 }
 
 #[test]
-fn rooms_keep_to_their_budgets() {
+fn modules_keep_their_budgets() {
     let budgets: Budgets = toml::from_str(&text("tests/map/budgets.toml")).unwrap();
     let mut over = vec![];
     for Room { path, lines: budget, raised } in &budgets.room {
@@ -62,7 +62,7 @@ fn rooms_keep_to_their_budgets() {
 
 /// Every top folder of a crate has a budget, and so has a crate whose modules are all files.
 #[test]
-fn every_room_has_a_budget() {
+fn every_top_module_has_a_budget() {
     let budgets: Budgets = toml::from_str(&text("tests/map/budgets.toml")).unwrap();
     for Crate { folder, .. } in CRATES {
         let entries = fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path());

@@ -45,7 +45,7 @@ fn naming(words: &[String]) -> BTreeSet<String> {
 /// A format touches the two files of the recipe: only its own file contains its key and the name of its output, and only
 /// the list uses that file.
 #[test]
-fn a_format_is_named_where_the_recipe_says() {
+fn formats_are_named_only_where_the_recipe_says() {
     let (_, places) = recipe("A format of trajectories");
     let [folder, example, list] = &places[..] else { panic!("{places:?}") };
     let arrows = Code::read(root()).arrows();
@@ -71,7 +71,7 @@ fn a_format_is_named_where_the_recipe_says() {
 
 /// Data of particles are requested only by the code that writes or accumulates them, and by nothing between it and the method.
 #[test]
-fn data_of_particles_are_asked_for_where_they_are_written() {
+fn particle_data_are_requested_by_writers_only() {
     let (_, places) = recipe("Data of each particle");
     let [home, format] = &places[..] else { panic!("{places:?}") };
     assert!(text(home).contains("pub trait PerParticle {") && text(home).contains("fn images(&self)"));

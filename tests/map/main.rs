@@ -121,7 +121,7 @@ fn arrows_of_rooms(arrows: &BTreeSet<Arrow>) -> Vec<(&str, &str, &str, &Arrow)> 
 /// arrow
 /// goes up.
 #[test]
-fn arrows_of_the_code_are_those_that_are_drawn() {
+fn drawn_arrows_match_the_code() {
     let (drawn, code) = (drawn(&text("ARCHITECTURE.md")), code());
     let arrows = code.arrows();
     let found = arrows_of_rooms(&arrows);
@@ -159,7 +159,7 @@ fn dependencies(manifest: &str) -> impl Iterator<Item = &str> {
 /// The kernels name neither physics nor laboratory, the physics and the package for Python do not name the laboratory, and none of them
 /// depends on a crate beyond its list.
 #[test]
-fn lower_crates_know_nothing_of_higher_ones() {
+fn lower_crates_do_not_name_higher_ones() {
     for (folder, expected) in DEPENDENCIES {
         let manifest = text(Path::new(folder).join("Cargo.toml"));
         let found: BTreeSet<&str> = dependencies(&manifest).collect();
@@ -183,7 +183,7 @@ fn lower_crates_know_nothing_of_higher_ones() {
 /// Circles of files are the known ones. A module and the files of its folder count as one: they may name shared definitions of
 /// the module.
 #[test]
-fn there_is_no_circle_of_files() {
+fn files_have_no_unknown_circles() {
     let all = code().arrows();
     let is_to_own_module = |(from, to): &&Arrow| {
         let (from, to) = (Path::new(from), Path::new(to));
@@ -201,7 +201,7 @@ fn there_is_no_circle_of_files() {
 
 /// Only a method's own folders and the lists name it.
 #[test]
-fn methods_are_named_by_lists_only() {
+fn only_lists_name_methods() {
     let method = |path: &str| {
         let within = FOLDERS_OF_METHODS.iter().find_map(|folder| path.strip_prefix(folder));
         let name = within.and_then(|it| it.split('/').nth(1)).map(str::to_owned);
@@ -216,7 +216,7 @@ fn methods_are_named_by_lists_only() {
 
 /// Every room of the crates has a line in the map, and every name of a line exists.
 #[test]
-fn the_map_names_every_room_and_nothing_else() {
+fn map_names_exactly_the_existing_rooms() {
     let map = map(&text("ARCHITECTURE.md"));
     for of in CRATES {
         let lines = map.iter().filter(|line| line.folder == Path::new(of.folder));
@@ -277,7 +277,7 @@ fn invariants_name_their_tests() {
 
 /// The README is short, and contains the command that the checks run.
 #[test]
-fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
+fn readme_is_short_and_has_the_test_command() {
     let text = text("README.md");
     assert!(text.lines().count() <= 90);
     assert!(text.lines().any(|line| line == "cargo test --workspace"));
@@ -285,7 +285,7 @@ fn the_readme_is_short_and_has_the_test_command_alone_on_a_line() {
 
 /// The list of long suites equals the one in docs/report.md, and each line has a command and a description.
 #[test]
-fn long_suites_are_those_of_the_documents() {
+fn documents_list_the_long_suites() {
     let list = text(".ci/long-suites");
     assert!(section(&text("docs/report.md"), "The long suites").contains(&format!("```text\n{list}```\n")));
     for suite in list.lines() {

@@ -46,7 +46,7 @@ fn files(subject: &str) -> Option<Vec<String>> {
 
 /// A number in bold is the number of files of its commit, and a recipe without a commit has none.
 #[test]
-fn recipes_state_the_files_of_their_commits() {
+fn recipes_match_their_commits() {
     let recipes = section(&text("ARCHITECTURE.md"), "Files to touch for");
     for item in recipes.split("\n- ").skip(1) {
         let stated = item.split("**").nth(1);

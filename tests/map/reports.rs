@@ -29,7 +29,7 @@ fn sections() -> Vec<Section> {
 }
 
 #[test]
-fn an_item_is_read_in_a_minute() {
+fn report_items_are_short() {
     let sections = sections();
     assert!(sections.len() > 30);
     let items = sections.len();
@@ -68,7 +68,7 @@ fn clumsy(text: &str) -> Option<String> {
 }
 
 #[test]
-fn numbers_in_sentences_are_for_readers() {
+fn numbers_in_sentences_are_readable() {
     assert_eq!(clumsy("0.7142857142857143 ns"), Some("0.7142857142857143".into()));
     assert_eq!(clumsy("in 1 layers, in 2 layers"), Some("1 layers,".into()));
     assert_eq!(clumsy("in 1 layer of 0.25 m"), None);

@@ -184,7 +184,7 @@ fn tree<'a>(
 }
 
 #[test]
-fn names_are_found_in_trees_and_tests_are_left_out() {
+fn use_trees_are_read_without_tests() {
     let text = r#"
         pub use crate::{a::{self, B as C}, d::*};
         // use crate::comment;

@@ -54,7 +54,7 @@ fn free_particles_diffuse_by_the_formula() {
 /// At one lag five are expected, and eleven or fewer in 99 of 100 trials.
 #[test]
 #[ignore = "long: cargo test --release --test structure -- --ignored"]
-fn bars_hold_the_truth_at_every_lag() {
+fn error_bars_cover_the_truth_at_every_lag() {
     let all = misses(100);
     for (what, misses) in &all {
         println!("{what}: {}", missed(misses));
@@ -67,7 +67,7 @@ fn bars_hold_the_truth_at_every_lag() {
 
 /// By hand: overlap in squares. Blocks as long as the lag share a sixth with the next, those four times as long a thirtieth.
 #[test]
-fn bars_are_wider_where_blocks_share_what_ends_in_the_next() {
+fn error_bars_widen_with_overlapping_blocks() {
     let of =
         |lag, length, n: usize| widening(lag, length, n).powi(2) * (1.0 - 2.0 / n as f64 * rho(lag, length));
     fn rho(lag: u64, length: u64) -> f64 {
@@ -112,7 +112,7 @@ fn rows_too_far_apart_give_no_integral() {
 
 /// Several runs are joined point by point: the mean of their values, for every way to request it.
 #[test]
-fn runs_with_seeds_of_their_own_are_joined() {
+fn structure_of_several_seeds_is_joined() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let sets = ["run.snapshot_every=0.2", "run.thermo_every=0.05", "particles.count=100", "run.time=10.0"];

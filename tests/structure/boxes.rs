@@ -118,7 +118,7 @@ impl Seeing {
 }
 
 #[test]
-fn functions_are_naive_sums_in_every_box() {
+fn functions_agree_with_naive_sums() {
     let mut random = Stream::new(8, Purpose::Test, 0);
     let mixture: Vec<f64> = [vec![0.25; 60], vec![3.0; 6]].concat();
     let boxes: [(&str, (Setting, Particles)); 9] = [

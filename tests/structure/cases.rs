@@ -26,7 +26,7 @@ fn structure(names: &[&str]) -> String {
 
 /// Sixteen discs on a lattice of 3 × 6: S = 16 at multiples of the lattice's wave vector along each axis, and 0 at every other wave vector.
 #[test]
-fn waves_of_a_rectangular_lattice_are_at_its_periods() {
+fn rectangular_lattice_has_waves_at_its_periods() {
     let folder = tempfile::tempdir().unwrap();
     let places: Vec<[f64; 2]> = [3.0, 9.0]
         .into_iter()
@@ -58,7 +58,7 @@ fn waves_of_a_rectangular_lattice_are_at_its_periods() {
 /// A disc of radius 6 with thirty of 0.5 around it: the small ones touch two of their kind and the large one, which has thirty neighbours. The
 /// same by hand for 26 around one of radius 5.
 #[test]
-fn large_discs_have_all_their_neighbours() {
+fn large_discs_have_many_neighbours() {
     let folder = tempfile::tempdir().unwrap();
     for (radius, around, distance) in [(6.0, 30, 7.0), (5.0, 26, 6.0)] {
         let middle = 2.0 * distance;
@@ -101,7 +101,7 @@ fn large_discs_have_all_their_neighbours() {
 /// Pairs 1.11 apart on a square lattice of 2.79: by hand a disc has one other at 1.11 and four at 2.79, so the second peak is higher, by
 /// 4/2.79 to 1/1.11. The first one is reported.
 #[test]
-fn the_first_peak_is_not_the_highest_one() {
+fn first_peak_need_not_be_the_highest() {
     let folder = tempfile::tempdir().unwrap();
     let places = (0..32).map(|disc| {
         let [column, row] = [disc / 2 % 4, disc / 8].map(|at| 1.0 + 2.79 * f64::from(at));
@@ -155,7 +155,7 @@ const FREE: &str = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"langevin
 /// D,
 /// and a run of that time reports D. Hard discs so thin that they rarely collide: D by Enskog.
 #[test]
-fn diffusion_is_told_where_it_is() {
+fn diffusion_constant_is_reported_when_known() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let free = scene(folder, "free.toml", FREE);
@@ -209,7 +209,7 @@ fn diffusion_is_told_where_it_is() {
 
 /// Doubts are reported in every output that contains the number.
 #[test]
-fn doubts_are_said_wherever_numbers_are_read() {
+fn doubts_are_reported_with_their_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let free = scene(folder, "free.toml", FREE);

@@ -55,7 +55,7 @@ fn varied(periodic: [bool; 2], seed: u64) -> (Setting, Particles) {
 
 /// The stress is the sum over all pairs, half of it in the cell of each disc.
 #[test]
-fn a_stress_is_that_of_looking_at_all_pairs() {
+fn stress_is_the_sum_over_all_pairs() {
     for (periodic, seed) in [([true, true], 1), ([true, false], 2), ([false, false], 3)] {
         let (setting, discs) = varied(periodic, seed);
         let forces = made_up();
@@ -131,7 +131,7 @@ fn a_stress_is_that_of_looking_at_all_pairs() {
 
 /// The stress has the same bits on any number of threads.
 #[test]
-fn a_stress_is_the_same_on_any_number_of_threads() {
+fn stress_does_not_depend_on_threads() {
     let (setting, discs) = varied([true, false], 4);
     let of = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -169,7 +169,7 @@ fn the_mean_stress_is_the_pressure() {
 /// Grains at rest on a floor: over the whole box the stress along y is their weight times their height above the centres of the floor
 /// (the virial theorem).
 #[test]
-fn a_heap_bears_its_weight() {
+fn stress_of_a_heap_balances_its_weight() {
     let sets = ["particles.wall_motion=\"fixed\"", "law.normal_damping=2000.0", "run.time=3.0"];
     let sets = sets.map(str::to_owned);
     let (prepared, _) = load("shaken-box", &sets, METHODS).unwrap();
@@ -187,7 +187,7 @@ fn a_heap_bears_its_weight() {
 
 /// A run writes three files with positions and error bars, a map of each, and particles coloured by force; hard discs have no forces.
 #[test]
-fn a_run_has_its_stress_in_files_and_pictures() {
+fn stress_is_written_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let asked = format!("output.structure={NAMES:?}");

@@ -213,7 +213,7 @@ fn a_crystal_is_in_order() {
 
 /// Hard discs: g at contact is (Z − 1)/(2ν) by the virial, and velocities are Maxwell's.
 #[test]
-fn hard_discs_touch_as_often_as_their_pressure_says() {
+fn contact_value_agrees_with_the_pressure() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     run(folder, "hard-disks", "a", &["run.snapshot_every=0.5", "run.events=1e6"], &[]);
@@ -251,7 +251,7 @@ fn hard_discs_touch_as_often_as_their_pressure_says() {
 
 /// A run in two sessions writes the same files, whether or not all functions are requested from the start.
 #[test]
-fn two_sessions_write_the_same() {
+fn structure_does_not_depend_on_sessions() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (scene, [half, whole]) in [

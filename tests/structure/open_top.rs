@@ -26,7 +26,7 @@ pub fn ideal_above_floor(random: &mut Stream, periodic: [bool; 2], radii: &[f64]
 
 /// Four discs of diameter 1 and mass 1 on a floor of 10 with slices up to 20: two on the floor, 2.01 apart, and two at 25.5 and 26.71.
 #[test]
-fn functions_below_an_open_top_are_hand_sums() {
+fn open_top_functions_agree_with_hand_sums() {
     let places = [[1.05, 0.5], [3.06, 0.5], [1.05, 25.5], [1.05, 26.71]];
     let velocities = [[1.0, 0.0], [-1.0, 2.0], [0.0, -1.0], [3.0, 0.0]];
     let of = |(id, (place, [x, y])): (u32, ([f64; 2], [f64; 2]))| {
@@ -85,7 +85,7 @@ fn functions_below_an_open_top_are_hand_sums() {
 /// Pairs of the ideal gas by sums over all pairs of heights, with the distribution of two uniform positions along the floor from a sum over
 /// positions.
 #[test]
-fn the_ideal_gas_below_an_open_top_keeps_its_heights() {
+fn ideal_gas_below_an_open_top_keeps_heights() {
     let mut random = Stream::new(9, Purpose::Test, 0);
     let mixture: Vec<f64> = [vec![0.25; 50], vec![1.0; 20]].concat();
     for (periodic, radii) in
@@ -147,7 +147,7 @@ fn the_ideal_gas_below_an_open_top_keeps_its_heights() {
 
 /// Two discs far above a floor, one twice as fast: displacements continue across the sides, and velocities are constant.
 #[test]
-fn motion_below_an_open_top_is_that_of_free_discs() {
+fn discs_below_an_open_top_move_freely() {
     let folder = tempfile::tempdir().unwrap();
     let text = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"hard-disks\"\n[domain]\nsides = [10.0, 4.0]\nperiodic = [true, false]\n\
          gravity = [0.0, -1e-12]\nopen_top = true\n[particles]\ngenerate = \"list\"\nradius = 0.5\nmass = 1.0\n\

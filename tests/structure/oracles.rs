@@ -11,7 +11,7 @@ use stripmine_physics::structure::{
 
 /// Hexatic order and neighbours of random discs, by a search over all of them: the six nearest sorted by distance, the angle of each.
 #[test]
-fn order_and_neighbours_are_those_of_looking_at_all() {
+fn order_and_neighbours_agree_with_naive_search() {
     let mut random = Stream::new(2, Purpose::Test, 0);
     for periodic in [[true, true], [true, false], [false, false]] {
         let (setting, discs) = ideal(&mut random, [14.0, 11.0], periodic, 90);
@@ -50,7 +50,7 @@ fn order_and_neighbours_are_those_of_looking_at_all() {
 
 /// A sample of all functions, repeated with the same memory, equals separate samples of each, on any number of threads.
 #[test]
-fn looks_share_what_they_find() {
+fn joint_samples_equal_separate_samples() {
     let mut random = Stream::new(3, Purpose::Test, 0);
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let pools = [1, 3].map(pool);
@@ -84,7 +84,7 @@ fn looks_share_what_they_find() {
 
 /// Waves of random discs, with the sine and cosine of each angle.
 #[test]
-fn waves_are_those_of_sines_and_cosines() {
+fn waves_agree_with_sines_and_cosines() {
     let mut random = Stream::new(4, Purpose::Test, 0);
     for periodic in [[true, true], [false, true]] {
         let (setting, discs) = ideal(&mut random, [57.0, 43.0], periodic, 1037);
@@ -116,7 +116,7 @@ fn waves_are_those_of_sines_and_cosines() {
 
 /// Density, flow and temperature of each slice, computed separately.
 #[test]
-fn profiles_are_those_of_looking_at_each_slice() {
+fn profiles_agree_with_naive_slices() {
     let mut random = Stream::new(5, Purpose::Test, 0);
     let (setting, mut discs) = ideal(&mut random, [30.0, 20.0], [true, false], 400);
     for disc in discs.all_mut() {
@@ -156,7 +156,7 @@ fn profiles_are_those_of_looking_at_each_slice() {
 
 /// Every pair of samples at every lag, with all samples stored; one disc is lost on the way.
 #[test]
-fn motion_is_that_of_all_looks_kept() {
+fn motion_agrees_with_all_stored_samples() {
     let mut random = Stream::new(6, Purpose::Test, 0);
     const DISCS: usize = 23;
     let mut whole: Vec<Vec<[f64; 4]>> = vec![];
@@ -207,7 +207,7 @@ fn power_of(lag: u64) -> u64 {
 
 /// Samples are spaced so that they take at most their share of the work, which is counted.
 #[test]
-fn looks_take_no_more_than_their_share() {
+fn samples_take_at_most_their_share() {
     let mut random = Stream::new(7, Purpose::Test, 0);
     let (setting, _) = ideal(&mut random, [30.0, 30.0], [true, true], 500);
     let all: Vec<_> = OBSERVABLES.iter().collect();

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn space_without_end_holds_everything_and_a_plane_has_no_depth() {
+    fn open_space_contains_everything_and_planes_are_flat() {
         let space = Domain { origin: [0.0; 3], sides: [Side::Open, Side::Periodic(2.0), Side::Open] };
         assert!(space.contains([-1e300, 1.0, 7.0]) && !space.contains([0.0, 3.0, 0.0]));
         assert_eq!(space.wrapped([-5.0, 3.0, 9.0]), [-5.0, 1.0, 9.0]);

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn bars_have_two_digits_and_means_as_many_decimals() {
+    fn error_bars_have_two_digits() {
         for (mean, bar, text) in [
             (0.6749, 0.0601, "0.675 ± 0.060"),
             (1234.56, 78.9, "1235 ± 79"),
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn exponents_stand_only_where_they_are_shorter() {
+    fn exponents_appear_only_where_shorter() {
         for (value, digits, text) in [
             (0.57914, 4, "0.5791"),
             (1.07, 4, "1.07"),

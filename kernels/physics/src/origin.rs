@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_source_is_committed_only_where_a_commit_names_all_of_it() {
+    fn dirty_or_unknown_sources_are_not_committed() {
         let origin = |commit: &str, dirty| {
             let [version, target] = [(); 2].map(|()| String::new());
             Origin { version, commit: commit.to_owned(), dirty, target }

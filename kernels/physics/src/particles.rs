@@ -248,7 +248,7 @@ mod tests {
 
     /// Two discs that pass each other just deep enough, each by the longest step, touch before and after it.
     #[test]
-    fn what_moves_the_longest_step_passes_by_just_unseen() {
+    fn longest_displacement_just_misses_the_contact() {
         let (radius, depth) = (0.5, 0.1);
         let step = longest_step(radius, depth);
         let apart = (1.0 - depth) * 2.0 * radius;

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_seen_is_spelled_out() {
+    fn invisible_characters_are_escaped() {
         for (text, shown) in [
             ("law.stiffness", "law.stiffness"),
             ("größe ≥ 数 'a' \"b\" \\", "größe ≥ 数 'a' \"b\" \\"),

@@ -193,7 +193,7 @@ mod tests {
 
     /// Each role runs in a process of its own, which is this test again: a process has one set of handlers and ends once.
     #[test]
-    fn what_is_held_is_finished_unless_a_second_signal_comes() {
+    fn held_work_finishes_unless_signalled_twice() {
         const ROLE: &str = "STRIPMINE_TEST_OF_SIGNALS";
         let roles: [(&str, fn(), &str); 3] = [
             ("whole work", whole_work, "written\nended Whole\n"),
@@ -204,7 +204,7 @@ mod tests {
             install(|end| say(&format!("ended {end:?}"))).unwrap();
             return roles.iter().filter(|(name, ..)| *name == role).for_each(|(_, work, _)| work());
         }
-        let name = "signals::tests::what_is_held_is_finished_unless_a_second_signal_comes";
+        let name = "signals::tests::held_work_finishes_unless_signalled_twice";
         for (role, _, words) in roles {
             let mut child = Command::new(std::env::current_exe().unwrap());
             let output = child.args(["--exact", name, "--nocapture"]).env(ROLE, role).output().unwrap();

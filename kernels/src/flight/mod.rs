@@ -227,7 +227,7 @@ mod tests {
 
     /// By hand: head on, half a radius off the line of centres, and a miss.
     #[test]
-    fn pairs_meet_where_they_touch() {
+    fn pairs_collide_at_contact() {
         let space = Space::new(PERIODIC, [0.0; 2]);
         let still = disc([5.0, 5.0], [0.0; 2]);
         assert_eq!(when(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0])), 1.0);
@@ -244,7 +244,7 @@ mod tests {
 
     /// Two discs that move apart collide on the other side of the box.
     #[test]
-    fn the_nearest_image_is_that_of_now() {
+    fn the_currently_nearest_image_collides() {
         let space = Space::new(PERIODIC, [0.0; 2]);
         let (a, b) = (disc([9.0, 5.0], [-1.0, 0.0]), disc([11.0, 5.0], [1.0, 0.0]));
         let at = |now: f64| meeting(&space, &a, &b, now, f64::INFINITY);
@@ -253,7 +253,7 @@ mod tests {
 
     /// Discs at rest collide by growing, as do discs that separate more slowly than they grow; others do not.
     #[test]
-    fn discs_that_grow_meet_sooner() {
+    fn growing_discs_collide_sooner() {
         let growing = |rate: f64| Space::new([None; 2], [0.0; 2]).growing(Growth { from: 0.5, rate });
         let (a, b) = (disc([0.0; 2], [0.0; 2]), disc([1.0, 0.0], [0.0; 2]));
         assert_eq!(when(&growing(0.25), &a, &b), 2.0);
@@ -266,7 +266,7 @@ mod tests {
 
     /// Discs that fall together collide as without gravity, for any local times.
     #[test]
-    fn gravity_changes_no_meeting_of_two() {
+    fn gravity_changes_no_collision_time() {
         let falling = Space::new([None; 2], [0.0, -2.0]);
         let (a, b) = (disc([0.0, 9.0], [0.0, 0.0]), disc([3.0, 9.0], [-1.0, 0.0]));
         assert_eq!(when(&falling, &a, &b), 2.0);

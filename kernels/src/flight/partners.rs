@@ -160,7 +160,7 @@ mod tests {
 
     /// Bit-equal to the result for each pair, on every instruction set.
     #[test]
-    fn all_partners_at_a_time_are_each_of_them() {
+    fn rows_of_partners_match_single_pairs() {
         let mut stream = Stream::new(3, Purpose::Test, 0);
         let mut meetings = 0;
         for (gravity, rate) in [([0.0; 2], 0.0), ([0.5, -1.0], 0.0), ([0.0; 2], 0.3)] {

@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spring_is_followed_with_the_order_of_the_scheme() {
+    fn errors_have_the_order_of_the_scheme() {
         let order = |off: &dyn Fn(u32) -> f64| (off(40) / off(80)).log2();
         assert!((order(&|n| off(VelocityVerlet, n)) - 2.0).abs() < 0.1);
         let gear = order(&|n| off(Gear::<4>::new(Acceleration::OfPositions), n));

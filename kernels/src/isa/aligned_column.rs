@@ -245,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_begin_at_lines_of_their_own_wherever_memory_is() {
+    fn columns_begin_at_distinct_cache_lines() {
         let rows: Vec<AlignedColumn<f32>> = (0..40)
             .map(|number| AlignedColumn::filled(number, number as f32, 100 + 20_000 * number))
             .collect();
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_vectors_otherwise() {
+    fn columns_behave_as_vectors() {
         let mut row = AlignedColumn::new(3, 1_u16..=9);
         row[2] = 7;
         let copy = row.clone();
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_outlives_the_thread_that_laid_it_out() {
+    fn a_column_outlives_its_thread() {
         let row = std::thread::spawn(|| AlignedColumn::new(5, 0..1000_u32)).join();
         assert_eq!(row.map(|row| row.iter().sum::<u32>()).ok(), Some(499_500));
     }

@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn every_class_has_an_operation_and_classes_partition_the_total() {
+    fn classes_partition_all_operations() {
         let mut counts = OpCounts::default();
         for &op in Op::ALL {
             counts.record(op);

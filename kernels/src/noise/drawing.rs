@@ -132,7 +132,7 @@ mod tests {
 
     /// Compares with the portable library, at both ends and in the middle of the range.
     #[test]
-    fn logarithm_sine_and_cosine_are_those_of_the_library() {
+    fn logarithm_sine_and_cosine_match_libm() {
         let mut u = 1.0 / (1u64 << 53) as f64;
         while u < 1.0 {
             for x in [u, u * 1.000_01, u * 1.41, u * 1.42, 1.0 - 0.5 * u] {
@@ -151,7 +151,7 @@ mod tests {
 
     /// Checks the four quarters from given words: cosine and sine of the angle they encode.
     #[test]
-    fn every_quarter_of_a_turn_comes_out() {
+    fn angles_cover_every_quarter() {
         for quarter in 0..4u32 {
             for part in [0u32, 1 << 20, 1 << 29, (1 << 30) - 1] {
                 let words = [0x2000_0000, 0, quarter << 30 | part, 7];

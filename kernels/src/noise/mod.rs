@@ -215,7 +215,7 @@ mod tests {
     /// For seeds one apart and all uses of the table in [`Purpose`], no two draws have a word pair in common. (64 bits of some
     /// 10⁵ draws coincide by chance once in 10⁹ cases.)
     #[test]
-    fn no_two_purposes_and_no_two_seeds_share_numbers() {
+    fn purposes_and_seeds_share_no_numbers() {
         let (ids, steps, most) = (0..40_u32, 0..40_u64, 1 << 32);
         let mut drawn = vec![];
         for seed in
@@ -242,7 +242,7 @@ mod tests {
 
     /// Philox of counter 0 and key 0 is published (see above); a second state is drawn with that as the key.
     #[test]
-    fn a_state_makes_a_seed_of_its_own() {
+    fn states_give_distinct_seeds() {
         assert_eq!(seed_of_state(7, []), 7);
         assert_eq!(seed_of_state(0, [[0, 0]]), 0xe169_c58d_6627_e8d5);
         assert_eq!(seed_of_state(!0, [[!0, !0]]), 0x41c8_3b0e_408f_276d);
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_serves_the_traits_of_rand_and_repeats() {
+    fn streams_repeat_and_implement_rand_traits() {
         let mut a = Stream::new(5, Purpose::Test, 0);
         let mut b = a.clone();
         let first: Vec<u64> = (0..9).map(|_| a.next_u64()).collect();

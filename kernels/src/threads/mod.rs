@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stage_begins_when_the_one_before_is_done() {
+    fn stages_run_one_after_the_other() {
         for threads in [1, 2, 3, 8] {
             let counts: [AtomicUsize; 3] = Default::default();
             let mut parts = vec![0_usize; 37];
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_and_results_come_back_in_their_order() {
+    fn failures_and_ordered_results_are_returned() {
         for threads in [1, 4] {
             let odd = |part: &mut usize, _: usize| if *part == 5 { Err("five") } else { Ok(()) };
             let mut parts: Vec<usize> = (0..9).collect();
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_is_reordered_the_same_on_any_number_of_threads() {
+    fn reordering_does_not_depend_on_threads() {
         let entries = 5 * PIECE as u32 / 2;
         let column: Vec<u32> = (0..entries).map(|entry| entry.wrapping_mul(77)).collect();
         let order: Vec<u32> = (0..entries).rev().collect();
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn two_who_keep_the_same_threads_awake_do_not_wait_for_each_other() {
+    fn callers_sharing_awake_threads_do_not_deadlock() {
         let others = rayon::current_num_threads().max(2);
         let both = Arc::new(std::sync::Barrier::new(others));
         let (sender, finished) = std::sync::mpsc::channel();
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panic_leaves_nobody_waiting() {
+    fn a_panic_leaves_no_thread_waiting() {
         let broken = || on(3, || on_threads(0..20, |n: usize| assert!(n != 11, "eleven")));
         assert!(std::panic::catch_unwind(broken).is_err());
         let broken = || on(3, || keep_awake(|| panic!("on purpose")));

@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_files_stay_in_the_folder_and_differ() {
+    fn file_names_are_safe_and_unique() {
         let mut taken = BTreeSet::new();
         let names = ["kinetic", "../kinetic", "kinetic", &"x".repeat(300)];
         let names = names.map(|name| file_name(name, &mut taken));

@@ -243,14 +243,14 @@ mod tests {
     use crate::report::Cell;
 
     #[test]
-    fn a_course_goes_from_the_smallest_to_the_largest() {
+    fn sparklines_span_smallest_to_largest() {
         assert_eq!(course(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
         assert_eq!(course(&[3.0]), "▁");
         assert_eq!(course(&[1.0; 100]).chars().count(), SMALL);
     }
 
     #[test]
-    fn no_curve_is_a_line_on_the_scale_of_others() {
+    fn curves_of_a_chart_have_similar_ranges() {
         let columns = ["time", "kinetic", "temperature", "elastic", "px", "py", "far"].map(str::to_owned);
         let row = |t: f64| vec![t, 680.0 * t, 0.7 * t, 200.0 * t, 1e-15 * t, 2e-15 * t, 1e9 + 300.0 * t];
         let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)], means: None };

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_whole_where_it_is_full_or_empty_and_cut_where_most_is_empty() {
+    fn mostly_empty_boxes_are_cut() {
         let full = [[0.0, 10.0]; 2];
         assert_eq!(seen(&square(20), [10.0, 10.0], [0, 1]), full);
         assert_eq!(seen(&[], [10.0, 10.0], [0, 1]), full);
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn bodies_in_space_fill_their_picture_though_one_is_far_away() {
+    fn outliers_do_not_shrink_the_picture() {
         let far = [square(20), vec![[1e6, -1e6, 1e6]]].concat();
         for axes in [[0, 1], [0, 2]] {
             for [from, to] in seen(&far, [f64::INFINITY; 2], axes) {
@@ -195,7 +195,7 @@ mod tests {
 
     /// A box is open above if a disc is above it; leaving a periodic side opens nothing.
     #[test]
-    fn a_box_that_is_left_is_open() {
+    fn boxes_with_discs_above_are_open() {
         let mut frame = frame(&[[5.0, 5.0, 0.0], [5.0, 12.0, 0.0]], [10.0, 10.0]);
         let box_of = |frame: &Frame, traces: &[[f64; 3]]| bounds(frame, None, traces, [0, 1]);
         assert_eq!(box_of(&frame, &[]), [[0.0, 10.0], [0.0, 10.0]]);

@@ -109,7 +109,7 @@ mod tests {
 
     /// All ranks end alike, and the message names the rank that cannot begin or does something else.
     #[test]
-    fn one_rank_that_cannot_begin_ends_all() {
+    fn a_rank_that_cannot_begin_ends_all() {
         for (parts, expected) in [
             (&["begins a", "begins a", "begins a"][..], None),
             (&["finished", "finished"], None),

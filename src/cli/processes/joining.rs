@@ -40,7 +40,7 @@ mod tests {
 
     /// Work that lasts until the last action, and work that ends at once.
     #[test]
-    fn what_takes_long_is_watched() {
+    fn long_work_triggers_actions() {
         let (sender, said) = channel();
         let acts = |time| ["notice", "end"].map(|what| (time, says(what, &sender))).into();
         assert_eq!(watched(|| [(); 2].map(|()| said.recv().unwrap()), acts(MOMENT)), ["notice", "end"]);

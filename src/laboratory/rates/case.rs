@@ -199,7 +199,7 @@ mod tests {
 
     /// With a clock set by the test, work continues until the seconds are reached.
     #[test]
-    fn work_goes_on_until_its_seconds_are_reached() {
+    fn work_continues_for_the_requested_seconds() {
         thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });
         let clock: fn() -> Box<dyn Fn() -> f64> = || Box::new(|| NOW.get());
         let discs = Overrides::new().set(&COUNT, 16_u64);

@@ -113,7 +113,7 @@ mod tests {
 
     /// Each line is a reading; class and message of a failed process are passed on.
     #[test]
-    fn a_process_is_heard_and_its_failure_is_handed_on() {
+    fn readings_and_failures_of_a_child_are_received() {
         let line = r#"echo '{"work": 3.0, "seconds": 1.0, "parts": {}, "counts": {}}'; "#;
         let one = format!("read cases; {line}");
         assert_eq!(shell(&format!("{one}{line}")), (Ok(()), vec![3.0, 3.0]));
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_is_not_there_is_an_error() {
+    fn a_missing_program_is_an_error() {
         let (class, said) = measure(Path::new("/no/such/program"), &[], &mut |_| ()).unwrap_err();
         assert!(class == Some(Class::InputOutput) && said.starts_with("the measuring process: "), "{said}");
     }

@@ -32,7 +32,7 @@ fn a_time_step_costs_what_the_paper_prints() {
 }
 
 #[test]
-fn a_particle_costs_125_plus_1656_over_the_occupancy_in_a_large_system() {
+fn large_system_cost_matches_bp93() {
     let particles = 1_000_000_000;
     for (cells_per_particle, per_particle) in [(10, 16_685.0), (4, 6_749.0)] {
         let clocks = paper_step(particles, particles * cells_per_particle) / particles as f64;
@@ -49,7 +49,7 @@ fn the_paper_machine_charges_every_operation_alike() {
 }
 
 #[test]
-fn the_speed_up_over_scalar_is_n_d_over_n_plus_d_and_tends_to_d() {
+fn vector_speedup_tends_to_the_pipeline_depth() {
     let machine = preset("paper").unwrap();
     let counts = counts_of(Op::Add, 7);
     let speed_up = |n| Clock::Scalar.clocks(&machine, &counts, n) / Clock::Paper.clocks(&machine, &counts, n);
@@ -129,7 +129,7 @@ fn daxpy() -> Work {
 }
 
 #[test]
-fn the_strip_mining_formula_gives_hennessy_and_pattersons_values() {
+fn strip_mining_formula_matches_the_textbook() {
     let charge = |start: f64| Charge { strip: Some(64.0), each_strip: 15.0 + start, each_element: 3.0 };
     assert_eq!(charge(49.0).clocks(200), 856.0);
     assert_eq!(charge(49.0).clocks(1000), 4024.0);
@@ -137,7 +137,7 @@ fn the_strip_mining_formula_gives_hennessy_and_pattersons_values() {
 }
 
 #[test]
-fn the_convoys_of_daxpy_are_those_of_the_textbook() {
+fn daxpy_convoys_match_the_textbook() {
     let machine = textbook(true);
     let convoys = convoys(&machine, daxpy().order().unwrap(), Memory::Ports);
     // Load and multiply, load and add, store: starts 12 + 7, 12 + 6 and 12, together 49; three chimes.
@@ -150,7 +150,7 @@ fn the_convoys_of_daxpy_are_those_of_the_textbook() {
 }
 
 #[test]
-fn a_product_that_feeds_a_sum_takes_141_clocks_unchained_and_77_chained() {
+fn chaining_reduces_141_clocks_to_77() {
     let pair = Work::in_order(vec![
         instruction(Op::Multiply, &[register(0), register(1)], register(2)),
         instruction(Op::Add, &[register(2), register(3)], register(4)),
@@ -161,7 +161,7 @@ fn a_product_that_feeds_a_sum_takes_141_clocks_unchained_and_77_chained() {
 }
 
 #[test]
-fn what_a_convoy_stored_is_loaded_by_a_later_one() {
+fn stored_data_are_loaded_by_later_convoys() {
     let machine = textbook(true);
     let program = Work::in_order(vec![
         instruction(Op::Store, &[register(0)], array(Array::X)),
@@ -173,7 +173,7 @@ fn what_a_convoy_stored_is_loaded_by_a_later_one() {
 }
 
 #[test]
-fn a_strip_of_registers_costs_the_papers_clock_and_the_loop() {
+fn register_strips_add_the_loop_overhead() {
     let machine = textbook(true);
     let work = daxpy();
     for n in [1, 63, 64] {
@@ -197,7 +197,7 @@ fn chaining_never_costs_and_ports_never_save() {
 }
 
 #[test]
-fn on_the_papers_machine_every_vector_clock_is_the_papers() {
+fn vector_clocks_agree_on_the_paper_machine() {
     let machine = preset("paper").unwrap();
     for clock in [Clock::Registers, Clock::Chained, Clock::Ports] {
         for n in [1, 64, 1000] {

@@ -197,7 +197,7 @@ mod tests {
     const SHAPE: ([f64; 3], usize) = ([8.0, 1.0, 4.0], 4);
 
     #[test]
-    fn two_neighbours_share_a_value_by_its_logarithm() {
+    fn weights_interpolate_logarithmically() {
         let levels = [10.0, 1000.0, 1e6];
         assert_eq!(shares(&levels, 1.0), [1.0, 0.0, 0.0]);
         assert_eq!(shares(&levels, 1e9), [0.0, 0.0, 1.0]);
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_is_charged_for_its_operations_and_for_the_starts_of_its_passes() {
+    fn charges_include_operations_and_pass_starts() {
         let of = |op| Outline { op, converts: false, reads: vec![], writes: None };
         let (passes, instructions) =
             (vec![of(Op::Add), of(Op::Gather)], vec![of(Op::Load), of(Op::Multiply)]);
@@ -224,7 +224,7 @@ mod tests {
 
     /// By hand: an array visited twice, one through an index, and a register, by a program over 10 of 100 elements.
     #[test]
-    fn the_first_use_of_an_array_comes_from_the_step_and_the_next_from_the_strip() {
+    fn first_visits_have_the_step_footprint() {
         let x = Reference { array: Array::X, element: "f64", shift: 0 };
         let y = Reference { array: Array::Y, element: "f32", shift: 0 };
         let register = Place::Register(RegisterName { file: File::Number, number: 0 });

@@ -119,13 +119,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_shipped_model_is_read_and_written_without_loss() {
+    fn shipped_model_round_trips() {
         let model = default_model().unwrap();
         assert_eq!(HostModel::parse("again", &model.to_toml().unwrap()).unwrap(), model);
     }
 
     #[test]
-    fn bad_entries_are_named_with_their_place() {
+    fn invalid_entries_are_reported_with_location() {
         let text = default_model().unwrap().to_toml().unwrap();
         let complaint = |old: &str, new: &str| {
             assert!(text.contains(old), "{old}");

@@ -190,7 +190,7 @@ mod tests {
 
     /// By hand: two passes over 100 elements at once, in strips of 32 with 4 in the last, and as a loop.
     #[test]
-    fn every_strip_begins_every_byte_counts_and_a_loop_visits_each_once() {
+    fn program_time_sums_starts_operations_and_bytes() {
         let around = Around::of_step(&[(&sums(1), 100)]);
         let ns = |execution| host().program(&sums(2), 100, execution, &around);
         let bytes = 0.25 * 2.0 * 800.0;
@@ -206,7 +206,7 @@ mod tests {
 
     /// A single sample has no spread, whatever the load; a load above the free cores means that the machine is not quiet.
     #[test]
-    fn a_state_is_said_only_as_far_as_it_was_measured() {
+    fn machine_state_follows_from_the_measurements() {
         let state = |seen: [Option<f64>; 2], load: Option<f64>| Measured::state_of(seen, load, 2);
         for (seen, load, begins, has) in [
             ([Some(0.01), Some(0.01)], Some(0.3), "quiet", ""),
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_of_another_host_is_told() {
+    fn model_of_another_host_is_reported() {
         let model = HostModel {
             title: "A CPU".to_owned(),
             instruction_set: "avx2".to_owned(),

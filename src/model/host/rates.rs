@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_phase_is_the_sum_of_its_units_and_of_making_lists() {
+    fn phase_time_includes_list_building() {
         let of = |units: Units| BTreeMap::from([("f64".to_owned(), units)]);
         let index = of([7.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let making = of([0.0, 0.0, 0.0, 0.0, 0.0, 100.0, 5.0, 0.0]);

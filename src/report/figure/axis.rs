@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_leave_some_room() {
+    fn fitted_ends_have_a_margin() {
         let of = |scale, values: &[f64]| fitting(&axis(scale, None), values.iter().copied()).unwrap();
         assert_eq!(of(Scale::Linear, &[0.0, 100.0]), [-4.0, 104.0]);
         assert_eq!(of(Scale::Linear, &[1.0, 101.0]), [0.0, 105.0]);
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_that_numbers_hardly_tell_apart_have_no_marks() {
+    fn unresolved_ends_have_no_marks() {
         for limits in [[0.0, 5e-324], [1e300, 1.000_000_000_000_001e300], [-1e308, 1e-308]] {
             assert!(labels(Scale::Linear, limits).len() < 9, "{limits:?}");
         }
@@ -246,7 +246,7 @@ mod tests {
 
     /// A margin beyond 1e-305 and 1e305 would give 0 and infinity.
     #[test]
-    fn ends_of_data_stay_numbers() {
+    fn fitted_ends_are_finite() {
         let of = |scale, data: [f64; 2]| Span::new(&axis(scale, None), data.into_iter());
         let wide = of(Scale::Logarithmic, [1e-305, 1e305]).unwrap();
         assert!(wide.ends[0] > 0.0 && wide.ends[1].is_finite(), "{wide:?}");
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn few_decades_are_marked_as_on_a_linear_axis() {
+    fn few_decades_have_linear_marks() {
         assert_eq!(labels(Scale::Logarithmic, [1.0, 1.8]), ["1", "1.2", "1.4", "1.6", "1.8"]);
     }
 

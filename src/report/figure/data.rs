@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_from_a_file_is_as_it_is() {
+    fn a_picture_from_a_file_is_unchanged() {
         let drawn = |has_data| Picture::Drawn { svg: "<svg/>".into(), has_data }.figure("old", "Old");
         assert_eq!(super::super::svg(&drawn(true)).unwrap(), "<svg/>");
         assert_eq!(data_file(&drawn(true)), Some("old.data.csv".into()));

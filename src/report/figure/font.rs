@@ -62,7 +62,7 @@ mod tests {
     use resvg::usvg::Node;
 
     #[test]
-    fn widths_are_those_of_the_font_or_a_little_more() {
+    fn widths_are_close_upper_bounds() {
         let letters =
             WIDTHS.iter().flat_map(|(_, letters)| letters.chars()).chain(['ŋ', 'Œ', 'j', '数', '✓']);
         for letter in letters {

@@ -65,13 +65,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_figure_gives_the_same_bytes() {
+    fn png_is_reproducible() {
         let figure = samples::logarithmic();
         assert_eq!(png(&figure).unwrap(), png(&figure).unwrap());
     }
 
     #[test]
-    fn a_map_has_its_colours() {
+    fn a_map_has_the_colours_of_its_values() {
         let figure = samples::map();
         let Picture::Map(map) = &figure.picture else { unreachable!() };
         let picture = Pixmap::decode_png(&png(&figure).unwrap()).unwrap();

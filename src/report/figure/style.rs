@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_told_apart_and_zero_is_grey() {
+    fn signs_are_distinguishable_and_zero_is_grey() {
         let [low, middle, high] = [0.0, 0.5, 1.0].map(|place| shade(level(place, true)));
         let ([low_red, _, low_blue], [high_red, _, high_blue]) = (low.channels(), high.channels());
         assert!(low_blue > low_red + 60 && high_red > high_blue + 60);

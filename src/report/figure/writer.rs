@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn words_cannot_break_out() {
+    fn words_are_escaped() {
         let mut figure = samples::linear();
         figure.title = "</text><script>1 & 2\u{1}".into();
         let text = svg(&figure).unwrap();
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_keep_their_bends() {
+    fn simplified_lines_keep_their_bends() {
         let straight: Vec<[f64; 2]> = (0..9).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
         assert_eq!(bends(&straight), [[0.0, 0.0], [8.0, 16.0]]);
         let bent = [&straight[..], &[[9.0, 0.0], [10.0, -16.0]]].concat();
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_go_from_place_to_place() {
+    fn paths_use_relative_steps() {
         assert_eq!(through(&[[1.0, 2.0], [1.5, 1.0], [3.004, 1.25]]), "M1 2l.5-1 1.5 .25");
         assert_eq!(through(&[[1.0, 2.0]]), "M1 2l0 0");
         assert!(through(&[[1e300, 0.0]]).starts_with("M1000000 0"));

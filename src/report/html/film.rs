@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn places_come_back_within_half_a_pixel() {
+    fn positions_are_recovered_within_half_a_pixel() {
         let film = pipe(40, 300);
         let data = data(&film);
         let (x, y) = (read(&data["x"]), read(&data["y"]));
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_without_a_disc_leaves_its_place_empty() {
+    fn an_absent_disc_is_nan() {
         let mut film = pipe(2, 3);
         film.frames[0].discs.truncate(2);
         let x = read(&data(&film)["x"]);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn data_cannot_end_their_element() {
+    fn film_data_cannot_end_their_element() {
         let text = embedded("x", &json!({ "name": "</script><script>alert(1)</script>", "less": "a<b" }))
             .into_string();
         assert_eq!(text.matches("</script").count(), 1, "{text}");

@@ -73,7 +73,7 @@ mod tests {
     use super::tight;
 
     #[test]
-    fn only_the_data_of_paths_is_tightened() {
+    fn only_path_data_is_compacted() {
         let body =
             "<path fill=\"none\" d=\"M1 -2h1m-3 -4h1\"/><text x=\"1\">a - b -c</text><path d=\"M0 0\"/>";
         let expected =

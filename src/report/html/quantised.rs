@@ -72,7 +72,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn numbers_come_back_within_half_a_step() {
+    fn numbers_are_recovered_within_half_a_step() {
         let numbers: Vec<f64> = (0..1000).map(|i| f64::from(i).sin() * 8.1 - 3.0).collect();
         let back = read(&Quantised::of(&numbers));
         let step = 2.0 * 8.1 / 65534.0;
@@ -82,7 +82,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn one_byte_is_taken_where_it_is_enough() {
+    fn one_byte_is_used_if_sufficient() {
         let numbers: Vec<f64> = (0..=254).map(f64::from).chain([f64::NAN]).collect();
         for (tolerance, bytes) in [(0.5, 1), (0.49, 2)] {
             let quantised = Quantised::within(&numbers, tolerance);
@@ -96,14 +96,14 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn ends_are_kept_and_what_is_no_number_stays_none() {
+    fn ends_are_exact_and_nan_is_preserved() {
         let back = read(&Quantised::of(&[2.5, f64::NAN, -1.25, f64::INFINITY]));
         assert_eq!((back[0], back[2]), (2.5, -1.25));
         assert!(back[1].is_nan() && back[3].is_nan());
     }
 
     #[test]
-    fn equal_numbers_and_none_at_all_are_no_trouble() {
+    fn equal_numbers_and_empty_input_are_encoded() {
         assert_eq!(read(&Quantised::of(&[7.0, 7.0])), [7.0, 7.0]);
         assert!(read(&Quantised::of(&[])).is_empty());
         assert!(read(&Quantised::of(&[f64::NAN]))[0].is_nan());

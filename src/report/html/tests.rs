@@ -102,7 +102,7 @@ fn page() -> String {
 }
 
 #[test]
-fn nothing_in_the_data_becomes_an_element() {
+fn data_cannot_inject_elements() {
     let page = page();
     assert!(!page.contains("<script>alert"), "a text was not escaped");
     assert!(page.contains("&lt;script&gt;alert(&quot;&amp;&quot;)&lt;/script&gt;"));
@@ -113,13 +113,13 @@ fn nothing_in_the_data_becomes_an_element() {
 }
 
 #[test]
-fn the_fixed_parts_cannot_end_their_elements() {
+fn scripts_and_styles_cannot_end_their_elements() {
     assert!(SCRIPTS.iter().all(|script| !script.contains("</script") && !script.contains("<!--")));
     assert!(!STYLE.contains("</style"));
 }
 
 #[test]
-fn nothing_is_fetched() {
+fn the_page_loads_nothing() {
     // Except definitions inside the page.
     let page = page().replace("url(#", "");
     for attribute in
@@ -135,7 +135,7 @@ fn nothing_is_fetched() {
 }
 
 #[test]
-fn every_item_is_in_summary_and_contents() {
+fn every_item_is_linked() {
     let page = page();
     for name in ["first", "second"] {
         // Contents, first screen, summary and heading.
@@ -145,7 +145,7 @@ fn every_item_is_in_summary_and_contents() {
 }
 
 #[test]
-fn an_item_names_its_numbers_command_seeds_data_and_origin() {
+fn an_item_shows_seeds_data_and_origin() {
     let page = page();
     assert!(page.contains("<td>1\u{202f}234\u{202f}567</td>"));
     assert!(page.contains("Seeds: 1993, 7."));
@@ -162,13 +162,13 @@ fn an_item_names_its_numbers_command_seeds_data_and_origin() {
 }
 
 #[test]
-fn backquotes_set_code_apart_if_they_come_in_pairs() {
+fn paired_backquotes_mark_code() {
     assert_eq!(prose("a `b<c` d").into_string(), "a <code>b&lt;c</code> d");
     assert_eq!(prose("a ` d").into_string(), "a ` d");
 }
 
 #[test]
-fn pictures_stand_in_the_page_and_share_their_markers() {
+fn inline_pictures_share_markers() {
     let page = page();
     assert_eq!(page.matches("<svg id=").count(), 4);
     // The first screen repeats one picture per item.

@@ -74,7 +74,7 @@ mod tests {
 
     /// By hand: 20 up to a time of 100, then 2 and 4 by turns, whose mean is 3.
     #[test]
-    fn a_transient_that_was_missed_is_cut_off() {
+    fn missed_transient_is_cut_off() {
         let value = |at: i32| if at < 100 { 20.0 } else { f64::from(2 + at % 2 * 2) };
         let rows: Vec<Vec<f64>> = (0..1000).map(|at| vec![f64::from(at), value(at)]).collect();
         let missed = Known { mean: 4.7, bar: 0.5, transient: 5.0, ..Known::exactly(4.7) };

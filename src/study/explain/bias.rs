@@ -331,7 +331,7 @@ mod tests {
     /// By hand: β = 2 at the power 2 with steps 0.2 and 0.1 and a reference at 0.05: differences 2 (0.04 − 0.0025) = 0.075 and 2 (0.01 − 0.0025) = 0.015;
     /// the bias at 0.2 is 0.08.
     #[test]
-    fn one_fit_goes_through_all_differences() {
+    fn bias_is_fitted_to_all_differences() {
         let [shift, bar] = fitted(&[seen(0.2, 0.05, [0.075, 0.001]), seen(0.1, 0.05, [0.015, 0.0005])], 2.0);
         assert!((shift - 0.08).abs() < 1e-12, "{shift}");
         // The better of 0.001/0.0375 and 0.0005/0.0075 times 0.04.
@@ -358,7 +358,7 @@ mod tests {
 
     /// A bias within its error bar does not shorten the step: 0.1 ± 0.4 leaves an error of 0.3 whole.
     #[test]
-    fn noise_is_no_bias() {
+    fn insignificant_bias_counts_as_noise() {
         let bias = Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16);
         assert!(!bias.is_significant() && (bias.below() - 0.5).abs() < 1e-6);
         assert_eq!((bias.expected(), bias.at(0.2).leaves(0.3)), (0.0, Some(0.3)));
@@ -380,7 +380,7 @@ mod tests {
 
     /// By hand: 10⁻³ per unit of time at the step 0.1 is 4·10⁻³ at 0.2 with the power 2, and adds 0.04 in a time of 10.
     #[test]
-    fn a_drift_of_energy_adds_up() {
+    fn energy_drift_accumulates_along_a_run() {
         let bias = Bias::of(&[seen(0.2, 0.0, [1.0, 0.1])], 2.0, 1.0, 1.0, 16).with_creep(0.1, 1e-3);
         assert!((bias.over(0.2, 10.0).shift - 1.04).abs() < 1e-12 && bias.at(0.2).shift == 1.0);
         assert!((bias.over(0.1, 10.0).shift - 0.26).abs() < 1e-12);
@@ -389,7 +389,7 @@ mod tests {
 
     /// A bias within its error bar is taken from single collisions, and is no more than the measured bound.
     #[test]
-    fn collisions_tell_the_bias_that_is_not_seen() {
+    fn collisions_estimate_an_insignificant_bias() {
         let of = |collisions: f64| {
             Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16)
                 .with_collisions(Some(collisions))

@@ -89,7 +89,7 @@ mod tests {
 
     /// By hand: an error of −2·10⁻³ t, with an oscillation that averages out, of an energy of 4 at the end.
     #[test]
-    fn a_drift_is_told_from_an_oscillation() {
+    fn drift_is_separated_from_oscillation() {
         let method = METHODS.iter().find(|it| it.trials.is_some_and(|it| it.shadow.is_some())).unwrap();
         let balance = Observed::of(method.trials.unwrap(), method.quantities).unwrap().balance.unwrap();
         let place = |name: &str| method.quantities.iter().position(|it| it.name == name).unwrap();

@@ -90,7 +90,7 @@ mod tests {
 
     /// A step counts only if all shorter ones reach the error too: one long step may reach it by coincidence.
     #[test]
-    fn the_longest_step_reaches_the_error_as_all_shorter_ones_do() {
+    fn all_shorter_steps_reach_the_error_too() {
         let drift = tried(&[[0.8, 1e-7], [0.4, 1e-5], [0.2, 1e-6], [0.1, 1e-8]]);
         assert_eq!(drift.step_for(2e-6).map(|it| it.step), Some(0.2));
         assert_eq!(drift.step_for(1e-9), None);
@@ -112,7 +112,7 @@ mod tests {
 
     /// By hand: from 16 at 0.4 to 1 at 0.2 it falls with the fourth power, and to 1/81 at a third of the step.
     #[test]
-    fn the_step_that_is_enough_follows_from_two() {
+    fn expected_step_is_extrapolated_from_two_steps() {
         let step = tried(&[[0.4, 16.0], [0.2, 1.0]]).expected_step(1.0 / 81.0).unwrap();
         assert!((step - 0.2 / 3.0).abs() < 1e-12, "{step}");
         assert_eq!(tried(&[[0.4, f64::INFINITY], [0.2, 1.0]]).expected_step(0.1), None);

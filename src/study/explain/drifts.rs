@@ -232,7 +232,7 @@ mod tests {
 
     /// By hand: t of 5 degrees of freedom is 2.015 (one-sided, 95 %); logarithms 0 and 1, three of each, have the mean 0.5 and the standard deviation 0.5477.
     #[test]
-    fn another_start_goes_as_far_as_scatter_says() {
+    fn deviation_bound_follows_from_scatter() {
         let all = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0].map(libm::exp);
         let expected = 0.5 + 0.5477 * 2.015 * f64::sqrt(7.0 / 6.0);
         assert!((libm::log(farthest_of_another(&all)) - expected).abs() < 1e-3);

@@ -297,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn kept_files_have_names_of_their_own() {
+    fn cached_files_are_named_by_key() {
         assert!(is_key("0123456789abcdef01234567.json"));
         for other in ["mine.json", "0123456789abcdef01234567.toml", "0123456789ABCDEF01234567.json", ".json"]
         {

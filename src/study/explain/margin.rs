@@ -99,7 +99,7 @@ mod tests {
     /// independent. A plan is made from some values, and the error bar of another run of the planned length should be as small as requested. Each
     /// case has 2000 plans.
     #[test]
-    fn bars_come_out_as_small_as_planned() {
+    fn error_bars_are_as_small_as_planned() {
         let mut state = 7_u64;
         let mut uniform = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -131,7 +131,7 @@ mod tests {
     /// of the planned length should be as small as requested, in 400 plans per case. The length was calibrated on the first memory alone, and the
     /// second confirms it. The third is half noise: there 88 % to 95 % of the error bars were small enough, and its limit of 86 % was set after that.
     #[test]
-    fn bars_of_correlated_series_come_out_as_small_as_planned() {
+    fn correlated_error_bars_are_as_small_as_planned() {
         let mut state = 11_u64;
         let mut uniform = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -186,7 +186,7 @@ mod tests {
 
     /// The time for an error bar reaches it with little excess, and so does any longer time; margins are factors above 1 that fall with the time.
     #[test]
-    fn the_time_for_a_bar_has_a_bar_as_small() {
+    fn planned_time_reaches_its_error_bar() {
         for square in [1e-20, 3e-3, 1.0, 7e5] {
             for freedoms in [1.0, 1.7, 2.0, 5.0, 6.0, 9.3, 15.0, 16.0, 40.0, 1000.0] {
                 for span in [1e-3, 1.0, 470.0] {
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_vary_needs_no_time() {
+    fn constants_need_no_time() {
         let bars = known(0.0, f64::INFINITY, 0.0).bars();
         assert_eq!((bars.time_for(0.1), bars.over(3.0), bars.over(0.0)), (0.0, 0.0, 0.0));
     }

@@ -83,7 +83,7 @@ mod tests {
     /// By hand: with a bias of 2e-5 per unit of time, 4/(0.1 − 2e-5 t)² = t has its first root at t = 492.10; with 1e-4 it has none, as the
     /// largest t (0.1 − 1e-4 t)² is 1000/3 · 0.00444 = 1.48, less than 4.
     #[test]
-    fn a_bias_that_grows_with_the_time_is_met_by_a_shorter_step_or_not_at_all() {
+    fn growing_bias_needs_a_shorter_step() {
         let of = |creep: f64, shortest: f64| {
             let bias = |part: f64, time: f64| Off::exactly(creep * part * time);
             optimum(TERMS, (0.1, shortest), bias, |chance| 4.0 / (chance * chance))
@@ -96,7 +96,7 @@ mod tests {
 
     /// Without bias the longest step is best; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.
     #[test]
-    fn a_third_of_the_error_is_bias_where_it_falls_with_the_step() {
+    fn linear_bias_takes_a_third_of_the_error() {
         let free = best(TERMS, |_| Off::default()).unwrap();
         assert!(free.part == 1.0 && (free.time - 400.0).abs() < 1e-9 && (free.seconds - 800.0).abs() < 1e-9);
         let bound = best(TERMS, |part| Off::exactly(0.3 * part)).unwrap();

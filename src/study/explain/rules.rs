@@ -74,7 +74,7 @@ fn biased(case: &Case, shift: f64, bar: f64) -> Option<Bias> {
 /// The scene's own configuration, whose bias is unknown, reaches its error in less time than another: then the scene is left as it stands. Where the
 /// other takes less time, it is the plan.
 #[test]
-fn a_plan_that_is_worse_than_the_scene_is_not_printed() {
+fn plan_is_never_worse_than_the_scene() {
     let case = gas();
     let all = Choice::all(case.entry.axes);
     let order = |choice: &&Choice| choice.scheme().map(|it| it.name) == case.own.scheme().map(|it| it.name);
@@ -103,7 +103,7 @@ fn a_plan_that_is_worse_than_the_scene_is_not_printed() {
 /// LAN17's scheme as printed heats free particles to kT/(1 − γ dt/2m): at steps of 0.2 and 0.1 (γ, m and kT are 1) by 0.1111 and 0.0526, which a line
 /// through the reference fits with 0.1099 at the longer one. Short and long windows agree.
 #[test]
-fn pairs_find_the_heat_of_the_printed_scheme() {
+fn pairs_measure_heating_of_the_printed_scheme() {
     let sets = ["particles.count=4000", "domain.sides=[100.0, 50.0]"].map(str::to_owned);
     let case = Case::load("langevin-free", &sets, METHODS).unwrap();
     let place = case.entry.quantities.iter().position(|it| it.name == "temperature").unwrap();
@@ -134,7 +134,7 @@ fn pairs_find_the_heat_of_the_printed_scheme() {
 
 /// Trials on a synthetic clock are reproducible: steps, biases and plans do not depend on the speed of the machine.
 #[test]
-fn trials_by_a_made_time_come_out_the_same() {
+fn trials_on_a_synthetic_clock_are_reproducible() {
     // Nanoseconds per particle and step.
     for (preset, sets, quantity, each) in [
         ("pipe-small", &["domain.sides=[0.81, 0.088]", "run.time=0.5"][..], "flow", 400.0),
@@ -161,7 +161,7 @@ fn trials_by_a_made_time_come_out_the_same() {
 /// By hand: the square of an error bar is 16 in a unit of time and well known, so an error of 0.01 takes 160 000 units of time at 1 s each; the error
 /// within the limit of an hour is 4/√3600 = 0.0667.
 #[test]
-fn a_plan_above_the_limit_says_what_the_limit_gives() {
+fn refused_plan_reports_error_within_the_limit() {
     let case = gas();
     let found = findings(&case, &[(&case.own, 1.0, biased(&case, 0.0, 0.0))], known(16.0, f64::INFINITY));
     let refused = plan(&case, &asking(&case, 0.01), &found, "trials").err().unwrap();
@@ -177,7 +177,7 @@ fn a_plan_above_the_limit_says_what_the_limit_gives() {
 
 /// An insignificant bias keeps the step within a quarter of the longest, however large its error bar; a significant one does not.
 #[test]
-fn the_uncertainty_of_a_bias_is_not_bought_off() {
+fn insignificant_bias_keeps_the_step_long() {
     let case = gas();
     let own = case.step().unwrap();
     for (shift, bar, part) in [(0.001, 0.5, 1.0), (0.2, 0.3, 0.25), (0.3, 0.01, 0.0816)] {
@@ -195,7 +195,7 @@ fn the_uncertainty_of_a_bias_is_not_bought_off() {
 /// For any scatter of the mean, the expected error is at most the requested one, and the printed run is no shorter than planned; in stretches and
 /// in whole runs.
 #[test]
-fn a_plan_expects_no_more_than_the_error_asked_for() {
+fn plan_stays_within_the_target_error() {
     let case = gas();
     for square in [1e-12, 3.7e-5, 0.2] {
         for freedoms in [2.0, 6.0, 9.4, 15.0, 16.0] {

@@ -228,7 +228,7 @@ mod tests {
     /// By hand: of 1, 1.2, 2 and 4 the faster half is 1 and 1.2; of 1, 1.2, 1.24, 1.3 and 4 three are kept, and no other is within a quarter of the
     /// best.
     #[test]
-    fn the_better_half_races_on() {
+    fn race_keeps_the_faster_half() {
         let places = |mut race: Race| {
             race.halve();
             race.racing.into_iter().map(|(at, _)| at).collect::<Vec<_>>()
@@ -240,7 +240,7 @@ mod tests {
 
     /// Decided by a lead of a quarter, or, from three times on, where the second is no slower than the best's second-best time.
     #[test]
-    fn a_race_ends_by_a_lead_or_a_tie() {
+    fn race_ends_by_lead_or_tie() {
         for (times, is_decided) in [
             (vec![&[1.0][..], &[1.26][..]], true),
             (vec![&[1.0][..], &[1.2][..]], false),

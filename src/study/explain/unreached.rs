@@ -75,7 +75,7 @@ mod tests {
 
     /// By hand: eight runs of 2.3 s take 18.4 s, more than twice the 5 s that were too short, and less than twice 10 s.
     #[test]
-    fn longer_trials_are_longer_than_those_that_were_made() {
+    fn advised_trials_are_longer_than_past_ones() {
         let advice = |trials| Unreached { expected: Some(2.3), trials, ..Unreached::of(1e-3, 4e-3) }.advice();
         assert_eq!(
             [5.0, 10.0].map(advice),

@@ -166,7 +166,7 @@ mod tests {
 
     /// Every grain moves by 10⁻⁷ of the largest radius, walls do not move, and each start differs.
     #[test]
-    fn starts_differ_by_next_to_nothing() {
+    fn displaced_starts_differ_slightly() {
         let (prepared, _) = load("shaken-box", &[], METHODS).unwrap();
         let starts = [1, 2].map(|number| displaced_start(&prepared, number));
         let before = prepared.particles();

@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_programs_do_the_same_physics_in_every_contest() {
+    fn both_programs_compute_the_same_physics() {
         for rival in rivals().unwrap() {
             assert!(!rival.contests.is_empty(), "{}", rival.rival);
             for it in &rival.contests {

@@ -59,7 +59,7 @@ mod tests {
     use std::convert::Infallible;
 
     #[test]
-    fn an_edge_is_found_from_every_guess() {
+    fn boundary_is_found_from_every_guess() {
         let steps = [1.0, 2.0, 4.0, 8.0];
         for guess in 0..6 {
             let found =

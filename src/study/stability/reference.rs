@@ -118,7 +118,7 @@ mod tests {
 
     /// By hand: ±1 eight times has the standard deviation 1.069, so a run may differ by 5.408 · 1.069 · 1.061 = 6.13.
     #[test]
-    fn a_mean_is_wrong_beyond_what_chance_makes_and_beyond_the_tolerance() {
+    fn wrong_means_exceed_scatter_and_tolerance() {
         let expected = Expected::of(&around([1.0, -1.0], 100.0), |_| 0.0).unwrap();
         let off = |a: f64| expected.worst(&Means::from([("a".to_owned(), vec![a])]));
         assert_eq!([off(106.1), off(93.9)], [None, None]);

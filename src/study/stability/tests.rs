@@ -37,7 +37,7 @@ fn whole(subject: &Subject, nanoseconds: f64) -> Result<Value, StudyError> {
 /// By hand: steps of 0.5, 8 and 128 own steps cost 3 (2 + 1/8 + 1/128 + 16 + 2) + 16 own steps, and 2 with each of four integrators; these are 128
 /// own steps of two discs at 0.5 s each, of which 38 % are planned.
 #[test]
-fn a_map_for_which_there_is_too_little_time_is_refused() {
+fn map_without_enough_time_is_refused() {
     let error = whole(&subject("two-discs", &["run.time=3.2"]), 0.5e9).err().unwrap();
     let StudyError::TooLittleTime { needed, budget } = error else { panic!("{error}") };
     let own_steps = 3.0 * (20.0 + 0.125 + 1.0 / 128.0) + 16.0 + 4.0 * 2.0;

@@ -184,7 +184,7 @@ mod tests {
     /// + m^Δ)/(1 − m^Δ). With m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every
     /// value counts, unless a row costs as much as eight units of time.
     #[test]
-    fn rows_are_as_close_as_pays() {
+    fn row_spacing_minimises_cost() {
         let near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 0.25;
         let slow = known(0.9, Some(FREE));
         assert!(

@@ -203,7 +203,7 @@ mod tests {
 
     /// By hand: 1 − (e^{−1} − e^{−2}) = 0.767456; three quarters of the ratio for a short window; everything for a long one.
     #[test]
-    fn a_window_has_a_part_of_the_difference() {
+    fn window_shows_part_of_the_bias() {
         assert!((part(2.0, 1.0) - 0.767_455_842_1).abs() < 1e-9);
         assert!((part(1e-6, 1.0) - 7.5e-7).abs() < 1e-12 && part(1e6, 1.0) > 0.999_99);
         assert_eq!(part(1.0, 0.0), 1.0);
@@ -212,7 +212,7 @@ mod tests {
 
     /// By hand: differences 0.1, 0.3 have a variance of 0.02; the means 1 and 3 one of 2, and 1.1 and 3.3 one of 2.42.
     #[test]
-    fn a_difference_scatters_less_where_runs_stay_together() {
+    fn paired_differences_scatter_less() {
         let found = Window::of(1.0, &[vec![1.0, 3.0], vec![1.1, 3.3]]);
         assert!((found.scatter - f64::sqrt(0.02 / 4.42)).abs() < 1e-12, "{found:?}");
         assert!((found.differences[0][1] - 0.3).abs() < 1e-12, "{found:?}");
@@ -220,7 +220,7 @@ mod tests {
 
     /// By hand: b = 3 and a = −1 over windows that show a quarter and a half: 3/4 − 3/4 = 0 and 3/2 − 1/2 = 1.
     #[test]
-    fn two_windows_tell_the_bias_and_the_change_at_once() {
+    fn two_windows_separate_bias_and_immediate_change() {
         assert_eq!(steady([1.0, 0.0], [0.5, 0.25]), [3.0, -1.0]);
         assert_eq!(steady([1.0, 0.5], [1.0, 1.0]), [1.0, 0.0]);
     }

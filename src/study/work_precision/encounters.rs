@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_is_a_turn_whatever_its_sense() {
+    fn circle_counts_as_one_turn() {
         let mut turns = Turns::default();
         for step in 0..=16 {
             let angle = TAU * f64::from(step) / 16.0;

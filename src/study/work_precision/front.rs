@@ -22,7 +22,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_point_of_the_front_is_beaten_in_both() {
+    fn front_points_are_not_dominated() {
         let points = [(1.0, 1.0), (2.0, 0.1), (3.0, 0.2), (2.0, 0.05), (4.0, 0.01), (0.5, f64::NAN)];
         assert_eq!(front(&points), [0, 3, 4]);
         assert!(front(&[]).is_empty());

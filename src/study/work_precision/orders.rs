@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_power_law_between_floor_and_ceiling_has_its_order() {
+    fn power_law_order_is_fitted_within_range() {
         let steps = (0..9).map(|k| 0.001 * f64::from(1 << k));
         let errors: Vec<(f64, f64)> = steps.map(|h| (h, (h.powi(3) + 1e-8).min(1e-3))).collect();
         let fitted = fit(&errors, 3e-7, 0.9e-3).unwrap();
@@ -54,7 +54,7 @@ mod tests {
 
     /// Large steps are outside the range of convergence: only the smallest are used.
     #[test]
-    fn a_fit_takes_the_smallest_steps() {
+    fn fit_uses_the_smallest_steps() {
         let steps = (0..9).map(|k| f64::from(1 << k));
         let errors: Vec<(f64, f64)> =
             steps.map(|h| (h, if h > 16.0 { 1e-3 * h } else { 1e-6 * h * h })).collect();

@@ -111,7 +111,7 @@ mod tests {
     use stripmine_physics::method::METHODS;
 
     #[test]
-    fn less_time_leaves_out_more_and_says_so() {
+    fn smaller_budget_omits_more_and_reports_it() {
         let axes = METHODS[0].axes;
         let choices = Choice::all(axes);
         let own = choices[0].clone();

@@ -50,7 +50,7 @@ const PRESSED: &str = include_str!("../../../tests/pressed.toml");
 /// Positions converge with the theoretical order: that of velocity Verlet itself, and that of Gear's schemes as their start allows. Energy of discs
 /// that start at rest converges with the orders of the schemes.
 #[test]
-fn orders_in_smooth_forces_are_those_of_theory() {
+fn smooth_forces_give_theoretical_orders() {
     let orders = |sets: &[&str], measure: &str| -> Vec<(String, f64, Option<f64>)> {
         let data = measured(&written(PRESSED, sets), &effort(4.0)).unwrap();
         let own = rows(&data, "orders").iter().filter(|order| order["error"] == measure);
@@ -75,7 +75,7 @@ fn orders_in_smooth_forces_are_those_of_theory() {
 
 /// One collision: over all phases of a step the error has the order of the kink or of the jump, and its mean falls faster.
 #[test]
-fn a_collision_errs_by_the_phase_of_its_step() {
+fn collision_error_depends_on_step_phase() {
     let orders = |more: &[&str]| -> Vec<f64> {
         let sets = [&["run.time=2.6", "law.friction=0"], more].concat();
         let data = measured(&subject("two-discs", &sets), &Effort { repeats: 0, ..effort(30.0) }).unwrap();
@@ -135,7 +135,7 @@ time = 200.0
 
 /// A scene with too few events in the compared time gets no recommendation, neither for an error nor relative to its own configuration.
 #[test]
-fn where_hardly_anything_happens_nothing_is_decided() {
+fn too_few_events_give_no_recommendation() {
     let data = measured(&written(FALLING, &[]), &effort(2.0)).unwrap();
     let scene = &data["scenes"][0];
     let why = scene["why_nothing_is_decided"].as_str().unwrap();
@@ -154,7 +154,7 @@ fn where_hardly_anything_happens_nothing_is_decided() {
 
 /// Trajectories of shaken grains diverge within a fiftieth of the scene, and those in a heat bath at once: both errors name a chart to use instead.
 #[test]
-fn scenes_whose_trajectories_part_at_once_are_refused() {
+fn diverging_trajectories_are_refused() {
     for (scene, why) in
         [("shaken-box", "diverge after a time of"), ("langevin-dense", "noise moves the particles")]
     {
@@ -172,7 +172,7 @@ fn scenes_whose_trajectories_part_at_once_are_refused() {
 
 /// Runs with a warning are cheaper, and none of them is recommended or on a front.
 #[test]
-fn no_run_with_an_objection_is_recommended() {
+fn runs_with_warnings_are_never_recommended() {
     // Close enough to collide at once, and so damped that every integrator gives a warning at sixteen times the step.
     let near = ["particles.positions=[[3.0, 4.0], [4.05, 4.25]]", "run.time=0.3", "law.normal_damping=20"];
     let data = measured(&subject("two-discs", &near), &effort(6.0)).unwrap();

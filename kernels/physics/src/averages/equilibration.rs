@@ -106,7 +106,7 @@ mod tests {
 
     /// A step of ten values, far above noise of known size: ten values are cut, and ten more.
     #[test]
-    fn a_step_is_cut_off_twice() {
+    fn transient_cut_is_twice_the_step() {
         for (height, first) in [(50.0, 10), (-4.0, 10), (5e4, 1)] {
             let mut series = Noise::new(1).series(64, 0.0);
             series[..first].iter_mut().for_each(|value| *value += height);
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_transient_is_cut_off_and_a_stationary_series_is_kept() {
+    fn transients_are_cut_and_stationary_series_kept() {
         let cut = |height| {
             let cuts = (0..100).filter_map(|seed| {
                 equilibrated(&Noise::new(seed).relaxing(1000, 0.5, height, 20.0)).map(|cut| cut as f64)
@@ -131,7 +131,7 @@ mod tests {
 
     /// An outlier in the first of two thousand rows costs a few rows, not a batch of them.
     #[test]
-    fn a_transient_of_a_row_costs_a_few() {
+    fn outlier_in_first_row_costs_few_rows() {
         let cut = |seed| equilibrated(&Noise::new(seed).relaxing(2000, 0.3, 5e4, 0.2)).unwrap();
         let mut cuts: Vec<usize> = (0..50).map(cut).collect();
         cuts.sort_unstable();
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_transient_as_long_as_the_series_has_no_mean() {
+    fn long_transients_have_no_mean() {
         for duration in [30.0, 75.0, 150.0] {
             let decay: Vec<f64> = (0..200).map(|at| libm::exp(-f64::from(at) / duration)).collect();
             let outcome = estimated(&decay, 0.0, 1.0);

@@ -241,7 +241,7 @@ mod tests {
 
     /// Error bars contain the true value in 92 to 98 of 100 series, for any correlation and any beginning.
     #[test]
-    fn bars_hold_the_truth_as_often_as_they_say() {
+    fn confidence_intervals_have_their_coverage() {
         const SEEDS: u64 = 400;
         for (name, series, truth, least) in SERIES {
             let means: Vec<bool> = (0..SEEDS)
@@ -299,7 +299,7 @@ mod tests {
     /// Error bars of stationary values contain the true value at the stated rate, down to a few independent samples; those of a few values do so
     /// more often.
     #[test]
-    fn bars_of_stationary_values_hold_the_truth() {
+    fn stationary_intervals_have_their_coverage() {
         for (length, memory, most) in [
             (10, 0.0, 1.0),
             (20, 0.0, 0.99),
@@ -320,7 +320,7 @@ mod tests {
 
     /// A slow component beneath fast noise: a run of five of its samples rarely has a mean, for any number of samples of the noise.
     #[test]
-    fn noise_hides_no_slow_change() {
+    fn noise_does_not_hide_slow_changes() {
         for (slow_samples, most) in [(1.0, 0.1), (5.0, 0.06), (10.0, 0.12)] {
             let memory = (1000.0 / slow_samples - 1.0) / (1000.0 / slow_samples + 1.0);
             let series = |seed| {
@@ -337,7 +337,7 @@ mod tests {
 
     /// At most one in two hundred stationary series has a transient cut.
     #[test]
-    fn chance_is_no_transient() {
+    fn stationary_series_are_rarely_cut() {
         for memory in [0.0, 0.5, 0.9] {
             let cuts = (0..1000).filter(|&seed| {
                 matches!(estimated(&Noise::new(seed).series(1000, memory), 0.0, 1.0),
@@ -351,14 +351,14 @@ mod tests {
 
     /// Hand calculation: the mean 2, the standard error 1/√3, Student's t with two degrees of freedom.
     #[test]
-    fn a_mean_of_independent_values_has_students_bar() {
+    fn independent_values_have_students_half_width() {
         let [mean, bar] = of_independent(&[1.0, 2.0, 3.0]).unwrap();
         assert!(mean == 2.0 && (bar - 4.3027 / 3f64.sqrt()).abs() < 1e-4, "{bar}");
         assert_eq!(of_independent(&[1.0]), None);
     }
 
     #[test]
-    fn what_has_no_mean_is_told_apart() {
+    fn outcomes_without_mean_are_distinguished() {
         let line: Vec<f64> = (0..500).map(f64::from).collect();
         assert_eq!(estimated(&line, 0.0, 1.0), Outcome::Changing { first: 0.0, last: 499.0 });
         let cooling: Vec<f64> = (0..100).map(|at| (1.0 + f64::from(at)).powi(-2)).collect();

@@ -195,7 +195,7 @@ mod tests {
 
     /// Runs of one ensemble, and runs of different energies, which shift their means by three of their error bars.
     #[test]
-    fn joined_bars_hold_the_truth_as_often_as_they_say() {
+    fn joined_intervals_have_their_coverage() {
         for (runs, own) in [(2, 0.0), (3, 0.0), (4, 0.0), (8, 0.0), (2, 0.4), (4, 0.4), (8, 0.4)] {
             let held = (0..300).map(|seed| {
                 let means = Noise::new(1_000_000 + seed).series(runs, 0.0);
@@ -217,7 +217,7 @@ mod tests {
 
     /// Hand calculation: 1 and 3 have the mean 2 and the standard error 1, with one degree of freedom.
     #[test]
-    fn what_is_constant_in_each_run_varies_between_them() {
+    fn constants_of_runs_vary_between_runs() {
         let of = |mean| Outcome::Constant { mean };
         assert_eq!(join(&[of(1.5), of(1.5)], true), of(1.5));
         let estimate = mean(join(&[of(1.0), of(3.0)], true));
@@ -230,7 +230,7 @@ mod tests {
 
     /// Two runs with a mean and one without events: the outcome is the same in every order, and includes all three.
     #[test]
-    fn no_run_is_forgotten_in_any_order() {
+    fn joins_are_independent_of_order() {
         let varying = [1, 2].map(|seed| estimated(&Noise::new(seed).series(1000, 0.5), 0.0, 1.0));
         let [a, b] = varying;
         let (still, short) =
@@ -257,7 +257,7 @@ mod tests {
     /// Hand calculation: means 1, 2, 3, 6 over equal times have the mean 3 and the standard error √(14/12), with three degrees of freedom, whatever
     /// their errors. Over times of 1, 1, 1, 3 the mean is 4, with an effective number of three runs.
     #[test]
-    fn four_runs_of_one_ensemble_have_the_error_of_their_spread() {
+    fn four_runs_have_the_error_of_their_spread() {
         let Outcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else { panic!() };
         let run = |mean, span| Outcome::Mean(Estimate { mean, span, ..some });
         let joined = mean(join(&[run(1.0, 9.0), run(2.0, 9.0), run(3.0, 9.0), run(6.0, 9.0)], true));
@@ -270,7 +270,7 @@ mod tests {
 
     /// One of two runs may be too short, but not two of three.
     #[test]
-    fn a_join_of_runs_most_of_which_are_too_short_is_too_short() {
+    fn joins_of_mostly_short_runs_are_too_short() {
         let long = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0);
         let short = estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0);
         let Outcome::TooShort { enough_at, .. } = short else { panic!("{short:?}") };
@@ -281,7 +281,7 @@ mod tests {
 
     /// Different energies make runs of a closed system independent samples; momenta that differ by rounding do not.
     #[test]
-    fn runs_that_differ_in_a_conserved_number_are_told() {
+    fn different_conserved_numbers_are_detected() {
         let kept = |first, farthest| Outcome::Kept { first, last: first, farthest };
         assert!(differ_for_good(&[Outcome::Constant { mean: 51.4 }, Outcome::Constant { mean: 48.0 }]));
         assert!(differ_for_good(&[kept(0.3, 1e-12), kept(-0.2, 1e-12)]));

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_row_is_no_value_and_the_start_of_increments() {
+    fn first_row_is_the_base_of_increments() {
         let mut rows = Rows::new(QUANTITIES);
         // Hand calculation: increments 1, 3 and 2 within half a unit of time each, at x = 2.
         for (time, sum) in [(0.0, 0.0), (0.5, 1.0), (1.0, 4.0), (1.5, 6.0)] {
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_before_the_spacing_changed_do_not_count() {
+    fn a_new_spacing_discards_earlier_rows() {
         let mut rows = Rows::new(QUANTITIES);
         for time in [0.0, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5] {
             rows.add(&row(time, time, 0.0));

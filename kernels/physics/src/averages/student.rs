@@ -83,7 +83,7 @@ mod tests {
 
     /// Textbook table: F at 95 %, by the degrees of freedom above and below.
     #[test]
-    fn ratios_of_variances_are_those_of_the_tables() {
+    fn variance_ratios_match_the_tables() {
         for (above, below, f) in [
             (1.0, 1.0, 161.45),
             (5.0, 2.0, 19.30),
@@ -115,7 +115,7 @@ mod tests {
 
     /// Textbook table: two-sided probability, degrees of freedom, t.
     #[test]
-    fn students_t_is_that_of_the_tables() {
+    fn students_t_matches_the_tables() {
         for (probability, freedoms, t) in [
             (0.95, 1, 12.706),
             (0.95, 2, 4.303),

@@ -179,7 +179,7 @@ mod tests {
 
     /// One of a thousand stationary series counts as drifting; a line does, and so does a decay that exceeds the noise.
     #[test]
-    fn a_drift_is_told_from_chance() {
+    fn drift_is_distinguished_from_noise() {
         let stationary = (0..2000).map(|seed| Noise::new(seed).series(400, 0.8));
         let called = stationary.filter(|series| WaveError::of(series).drifts(0.999)).count();
         assert!(called <= 8, "{called} of 2000");

@@ -284,7 +284,7 @@ mod tests {
 
     /// The heading matches CHARMM, NAMD and LAMMPS (ISTART, NSAVC, DELTA), and frames are evenly spaced in one session and in two.
     #[test]
-    fn frames_are_evenly_apart_as_the_heading_says() {
+    fn frames_are_spaced_as_the_heading_states() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.dcd");
         let even = Spacing { steps: 1000, dt: 0.005 };

@@ -177,7 +177,7 @@ mod tests {
 
     /// Frames are written in order, whatever the thread is doing; an error is reported by the next sync at the latest.
     #[test]
-    fn frames_are_written_in_order_and_failures_come_out() {
+    fn frames_keep_their_order_and_failures_surface() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("frames");
         let header = RunHeader::default();

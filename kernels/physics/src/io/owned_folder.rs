@@ -409,7 +409,7 @@ mod tests {
 
     /// A name that leads out of the folder makes a list invalid, even if it ends like an own file, and nothing is written according to it.
     #[test]
-    fn names_that_lead_out_of_the_folder_are_on_no_list() {
+    fn lists_reject_names_outside_the_folder() {
         let holds = |is_shared| Holds::Files {
             heading: "pictures 1",
             is_own: |name| name.ends_with(".svg"),

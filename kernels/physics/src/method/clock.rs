@@ -227,7 +227,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_comes_again_comes_at_multiples() {
+    fn periodic_events_fall_on_multiples() {
         let at = |steps, time| Clock { steps, time, events: 0 };
         assert_eq!(Every::steps(0).next(&at(3, 0.0)), None);
         assert_eq!(Every::steps(10).next(&at(0, 0.0)), Some(Until::Steps(10)));
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_takes_no_step_more_by_rounding() {
+    fn rounding_adds_no_step() {
         for (time, dt, steps) in [
             (0.0, 0.1, 0),
             (0.30000000000000004, 0.1, 3),
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_and_snapshots_are_counted_beforehand() {
+    fn row_and_snapshot_counts_are_predicted() {
         let schedule =
             |until, every| Schedule { until, rows: every, snapshots: every, checkpoints: Every::Never };
         let counts = |until, every| {
@@ -293,7 +293,7 @@ mod tests {
 
     /// Messages never name steps where a method takes none.
     #[test]
-    fn moments_are_named_by_what_the_method_counts() {
+    fn moments_name_steps_or_events() {
         let at = |steps, time, events| Clock { steps, time, events };
         let named = |clock: Clock| (clock.to_string(), clock.done(), clock.number());
         let words = |moment: &str, done: &str, number| (moment.to_owned(), done.to_owned(), number);

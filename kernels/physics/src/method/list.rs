@@ -120,7 +120,7 @@ mod tests {
 
     /// Two presets have moving walls: a box shaken ten times a second, and a floor with 1.5 vibrations in a unit of time.
     #[test]
-    fn periods_are_those_of_moving_walls() {
+    fn only_moving_walls_have_a_period() {
         let presets = METHODS.iter().flat_map(|method| method.vocabulary.presets).map(|preset| preset.name);
         let period = |name| Some((name, load(name, &[], METHODS).unwrap().0.model.period()?));
         let found: Vec<(&str, f64)> = presets.filter_map(period).collect();

@@ -116,7 +116,7 @@ mod tests {
     ];
 
     #[test]
-    fn a_misspelt_quantity_is_an_error_that_names_those_there_are() {
+    fn unknown_quantity_error_lists_known_names() {
         assert_eq!(observed(QUANTITIES, &[1.0, 2.0], ["flow", "time"]), Ok([2.0, 1.0]));
         let said = observed(QUANTITIES, &[1.0, 2.0], ["flwo"]).unwrap_err().to_string();
         assert_eq!(said, "unknown quantity `flwo`\n  help: use one of time, flow");

@@ -58,7 +58,7 @@ mod tests {
 
     /// The suggested setting starts with the requested temperature: the same draws, scaled. With a bath, or a small difference, there is no report.
     #[test]
-    fn a_start_that_is_colder_than_asked_is_said_to_be() {
+    fn start_temperature_deviation_is_reported_with_remedy() {
         let said = |scene: &str, sets: &[&str]| {
             let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
             let (prepared, _) = load(scene, &sets, METHODS).unwrap();

@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn typed_overrides_mean_the_same_as_typed_texts() {
+    fn overrides_equal_their_text_form() {
         let known = vocabularies(METHODS);
         let outcome = |values: Result<Values, SceneErrors>| {
             let prepared = values.and_then(|values| prepare(values, METHODS));
@@ -265,7 +265,7 @@ mod tests {
 
     /// Further overrides reactivate values that earlier ones deactivated: two-discs gives five values of Gear's scheme.
     #[test]
-    fn values_put_aside_come_back() {
+    fn deactivated_values_are_restored() {
         let known = vocabularies(METHODS);
         let given = ["integrator.kind=velocity-verlet".to_owned()];
         let values = Values::load("two-discs", &given, &known).unwrap();

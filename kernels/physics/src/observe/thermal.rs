@@ -50,7 +50,7 @@ mod tests {
 
     /// Hand calculation: masses 1 and 3 with velocities (1, 2) and (−1, 0); Σ m v² = (4, 4), Σ m v = (−2, 2).
     #[test]
-    fn temperature_counts_the_degrees_of_freedom_that_move() {
+    fn temperature_counts_thermal_degrees_of_freedom() {
         let motion = [
             AxisMotion { twice_kinetic: 4.0, momentum: -2.0 },
             AxisMotion { twice_kinetic: 4.0, momentum: 2.0 },
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn energy_errors_are_relative_to_what_does_not_vanish() {
+    fn energy_errors_have_a_nonzero_scale() {
         assert_eq!(relative_energy_error(0.1, -2.0, 1.0, 3.0), 0.05);
         assert_eq!(relative_energy_error(3e-8, 5.6e-17, 0.06, 0.01), 3e-8 / 0.06);
         assert_eq!(relative_energy_error(1e-3, 0.0, 0.0, 0.5), 2e-3);

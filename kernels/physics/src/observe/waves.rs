@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_runs_the_way_it_is_shifted() {
+    fn waves_move_in_their_direction() {
         for (shift, expected) in [(1, [0.0, 0.0, 1.0]), (-1, [1.0, 0.0, 0.0]), (0, [0.0, 1.0, 0.0])] {
             let Directions { power, back, standing, forth, of_one_wave } =
                 directions(&wave(shift), 32.0, 8.0);
@@ -162,7 +162,7 @@ mod tests {
     /// A backward wave that grows and decays has forward power, and so has the single wave of the same strength; two opposite waves have more
     /// forward power than a single wave.
     #[test]
-    fn what_comes_and_goes_is_told_from_what_runs_both_ways() {
+    fn fading_waves_differ_from_opposite_waves() {
         let looks = |of: fn(f64, f64) -> f64| -> Vec<Vec<u32>> {
             let count = |look: i32, bin: i32| {
                 (100.0 + of(f64::from(look), TAU * f64::from(bin) / 16.0)).round() as u32
@@ -178,19 +178,19 @@ mod tests {
     }
 
     #[test]
-    fn an_even_spread_has_no_variance_and_a_heap_has_all_of_it() {
+    fn fano_is_zero_for_an_even_spread() {
         assert_eq!(fano(&histogram((0..40).map(|i| 0.05 + 0.1 * f64::from(i)), 4.0, 4)), 0.0);
         // All in one of four bins: mean 10, variance (30² + 3·10²)/4.
         assert_eq!(fano(&histogram([0.5; 40], 4.0, 4)), 30.0);
     }
 
     #[test]
-    fn rims_are_inside() {
+    fn positions_at_the_ends_are_counted() {
         assert_eq!(histogram([0.0, 4.0, 4.1, -0.1], 4.0, 4), [2, 0, 0, 2]);
     }
 
     #[test]
-    fn a_wave_is_seen_at_its_wavelength_and_not_below_the_shortest() {
+    fn strongest_mode_respects_the_shortest_wavelength() {
         let places: Vec<f64> = (0..400).map(|i| 2.0 * f64::from(i % 5)).collect();
         assert!((strongest_mode(&places, 10.0, 2.0) - 1.0).abs() < 1e-12);
         assert!(strongest_mode(&places, 10.0, 2.5) < 1e-12);

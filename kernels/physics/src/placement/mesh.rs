@@ -30,7 +30,7 @@ mod tests {
 
     /// Sites equal those of a shuffled list of all, for meshes of one site to many, with a few or all of them drawn.
     #[test]
-    fn places_are_those_of_the_shuffled_list() {
+    fn sites_match_a_shuffled_list() {
         for (columns, rows, count) in [(1, 1, 1), (7, 5, 35), (7, 5, 1), (30, 40, 600), (500, 300, 90)] {
             for seed in 0..20 {
                 let mut random = Stream::new(seed, Purpose::Placement, 0);
@@ -47,7 +47,7 @@ mod tests {
 
     /// Sites are drawn at most once, and all of them if all are asked for. Each is equally likely in each turn: χ² of 9999 draws of 3 of 6.
     #[test]
-    fn places_are_different_and_all_alike() {
+    fn sites_are_distinct_and_equally_likely() {
         let mut all = mesh([7, 5], 35, 4);
         all.sort_unstable();
         all.dedup();

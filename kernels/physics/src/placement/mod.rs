@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_packing_has_its_fraction_and_no_overlaps_across_its_sides() {
+    fn packings_have_their_fraction_without_overlap() {
         for fraction in [0.84, 0.3] {
             let packing = hexagonal(300, fraction, 0.01, 3);
             let n = packing.particles.len();

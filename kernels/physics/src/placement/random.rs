@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn discs_overlap_nothing_and_lie_in_their_room() {
+    fn random_discs_stay_inside_without_overlap() {
         let filling = filling();
         let discs = random(&filling).unwrap();
         assert_eq!(discs.len(), 300);
@@ -235,14 +235,14 @@ mod tests {
 
     /// A change of these bits changes every scene with a random start; a new version of `rand` must not cause it unnoticed.
     #[test]
-    fn the_bits_of_a_start_stay() {
+    fn bits_of_a_random_start_are_fixed() {
         let mut discs = random(&Filling { count: 40, ..filling() }).unwrap();
         stir(&mut discs, 9, true, |_| 0.5);
         assert_eq!(crate::particles::Particles::new(discs).checksum(), "5ba7c8a9");
     }
 
     #[test]
-    fn more_than_there_is_room_for_is_refused() {
+    fn too_many_discs_are_refused() {
         let jammed = random(&Filling { count: 700, ..filling() }).unwrap_err();
         assert!(jammed.asked == 700 && (350..450).contains(&jammed.placed), "{jammed}");
         let narrow = Filling { room: [[-2.0, 1.0], [28.0, 1.3]], ..filling() };

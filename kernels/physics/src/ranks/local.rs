@@ -146,7 +146,7 @@ mod tests {
 
     /// Receiving from a rank that has ended is an error that names it; the others receive their messages.
     #[test]
-    fn a_rank_that_has_ended_is_named() {
+    fn ended_ranks_are_named() {
         let mut all = ranks(3, 1);
         drop(all.remove(1));
         let ended = Err(RankError::Ended(1));
@@ -160,7 +160,7 @@ mod tests {
 
     /// Messages of a rank arrive after its end: its last one may name another lost rank.
     #[test]
-    fn the_last_messages_of_a_rank_are_heard() {
+    fn last_messages_of_a_rank_arrive() {
         let mut all = ranks(2, 1);
         let last = all.remove(1);
         [7, 8].into_iter().for_each(|word| last.send(0, parcel(&[word])));

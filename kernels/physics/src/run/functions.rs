@@ -280,7 +280,7 @@ mod tests {
 
     /// Hand calculation: 1, 2 and 3 have the mean 2 and the standard error 1/√3, and Student's t for two degrees of freedom is 4.303.
     #[test]
-    fn runs_are_joined_where_all_of_them_are() {
+    fn only_points_of_all_runs_are_joined() {
         let runs =
             [vec![[0.5, 1.0], [1.5, 7.0]], vec![[0.5, 2.0], [1.0, 9.0], [1.5, 7.0]], vec![[0.5 + 1e-9, 3.0]]];
         let point = |[over, mean]: [f64; 2]| Point { over: vec![over], mean, bar: 0.1 };

@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn looks_come_at_numbers_of_rows_that_grow() {
+    fn checks_come_at_growing_row_counts() {
         let looks: Vec<u64> = (0..60).filter(|&rows| is_looked_at(rows)).collect();
         assert_eq!(looks, [32, 36, 40, 45, 50, 56]);
         assert!((0..1_000_000).filter(|&rows| is_looked_at(rows)).count() < 100);

@@ -229,7 +229,7 @@ mod tests {
     /// Frames are written once. Without steps, frames differ if the time or the events do. A moment that adds nothing to a file is not that of
     /// its last frame.
     #[test]
-    fn frames_are_there_once() {
+    fn frames_are_written_once() {
         let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
         let mut growing = Growing::of(&prepared);
         growing.0[1].sink = Some(Box::new(Numbers(vec![])));

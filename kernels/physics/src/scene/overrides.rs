@@ -131,7 +131,7 @@ mod tests {
 
     /// Overrides given as values and as texts read back exactly.
     #[test]
-    fn values_come_back_as_they_were_set() {
+    fn overrides_read_back_exactly() {
         let known = vocabularies(METHODS);
         let velocities = vec![[0.1, -1e-300], [2.0, 1.0 / 3.0]];
         for dt in [1.0, 0.1 + 0.2, 1e-9 / 3.0] {

@@ -5,7 +5,7 @@ use super::{Fallback, SECTIONS};
 use crate::method::METHODS;
 
 #[test]
-fn every_key_is_documented_and_its_default_is_a_value_of_its_type() {
+fn keys_have_docs_and_valid_defaults() {
     for method in METHODS {
         let keys = &method.vocabulary.keys;
         for key in keys.keys() {

@@ -116,7 +116,7 @@ mod tests {
     /// Keys that are misspelt, of other programs, of other methods or in the wrong section, for each method, in a file and on the command line: no
     /// help suggests a key with another meaning.
     #[test]
-    fn help_leads_to_the_key_that_is_meant() {
+    fn help_suggests_the_intended_key() {
         for (preset, key, words) in [
             ("langevin-free", "law.temperature", "did you mean `law.bath_temperature`?"),
             ("langevin-free", "law.seed", "did you mean `law.noise_seed`?"),

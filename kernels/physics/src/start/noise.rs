@@ -27,7 +27,7 @@ mod tests {
     /// A generated start uses the scene's seed. The same particles as a list have another seed, which depends on the scene's seed and on every
     /// position and velocity.
     #[test]
-    fn a_listed_start_has_a_seed_of_its_own() {
+    fn listed_starts_derive_their_own_seed() {
         let (prepared, _) = load("langevin-free", &["particles.count=5".to_owned()], METHODS).unwrap();
         let particles = prepared.particles().clone();
         let (drawn, listed) = (Start::default(), Start::List(List::default()));

@@ -85,7 +85,7 @@ mod tests {
 
     /// Each block is the mean of its own samples, and there are 8 to 16 of them for any number of samples.
     #[test]
-    fn blocks_are_means_of_their_looks() {
+    fn blocks_are_means_of_their_samples() {
         for looks in [1_u64, 2, 31, 32, 33, 100, 1000] {
             let mut blocks = Blocks::new(2);
             for look in 0..looks {

@@ -170,7 +170,7 @@ mod tests {
 
     /// Hand calculation for exponential decorrelation: M = 4 (t − 1 + exp(−t)), C = 2 exp(−t), τ = D = 1.
     #[test]
-    fn what_is_missing_is_that_of_exponential_memory() {
+    fn missing_parts_match_exponential_decay() {
         for last in [1.0_f64, 3.0, 10.0] {
             let lags = [0.0, 0.25 * last, 0.5 * last, last];
             let displacements = lags.map(|t| 4.0 * (t - 1.0 + (-t).exp()));

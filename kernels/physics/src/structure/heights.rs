@@ -129,7 +129,7 @@ mod tests {
 
     /// Hand calculation: density of the difference of two uniform positions.
     #[test]
-    fn chances_along_a_side_are_those_of_two_uniform_places() {
+    fn probabilities_match_two_uniform_positions() {
         for (side, radii, way, chance) in [
             (Side::Periodic(10.0), [0.5, 1.0], 2.0, 0.4),
             // Ranges of 9 and 9: 1 − (1 − 3/9)².

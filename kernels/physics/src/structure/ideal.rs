@@ -256,7 +256,7 @@ mod tests {
 
     /// The integral over angles and the samples on a grid agree with the formula of the rectangle.
     #[test]
-    fn three_ways_to_the_share_of_a_ring_agree() {
+    fn three_ring_fraction_methods_agree() {
         let discs = Particles::new((0..3).map(|id| disc(id, Kind::Grain, [3.0, 4.0], 0.5)).collect());
         for (sides, periodic) in [([12.0, 9.0], [true, false]), ([12.0, 9.0], [false, false])] {
             let domain = Domain::planar([0.0; 2], sides, periodic);
@@ -276,7 +276,7 @@ mod tests {
 
     /// A channel between rows of nearly touching wall discs is a strip with slightly uneven edges, and nothing outside of it is reached.
     #[test]
-    fn a_channel_is_what_its_walls_leave() {
+    fn channel_area_matches_its_walls() {
         let mut all = vec![disc(0, Kind::Grain, [10.0, 6.0], 0.5)];
         for column in 0..200 {
             for height in [3.0, 9.0] {

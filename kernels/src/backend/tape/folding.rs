@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_stays_where_its_array_is_written_while_it_is_needed_or_holds_another_precision() {
+    fn overwritten_or_converting_loads_are_not_folded() {
         let a = Operand::Register(register(0));
         for element in ["f64", "f32"] {
             let code = [

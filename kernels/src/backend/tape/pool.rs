@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_given_back_is_found_again_and_what_is_in_use_is_not() {
+    fn pool_reuses_returned_values_only() {
         let mut kept: Box<Vec<u8>> = take();
         kept.push(1);
         assert!(take::<Vec<u8>>().is_empty());

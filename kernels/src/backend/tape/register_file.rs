@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn registers_do_not_overlap_and_spread_over_the_cache() {
+    fn registers_are_disjoint_and_spread_over_the_cache() {
         for lines in 0..1000 {
             let apart = lines_apart(lines);
             assert!(apart >= lines && apart % 2 == 1 && apart < lines + 2 * APART + 2, "{lines}: {apart}");

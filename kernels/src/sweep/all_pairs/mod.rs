@@ -320,7 +320,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bands_cover_all_rows_once_with_about_equal_work() {
+    fn bands_cover_rows_with_equal_work() {
         for groups in [1, 2, 5, 33, 100, 1024] {
             for bands in [1, 2, 7, 32] {
                 let rows = rows_of_equal_work(groups, bands);

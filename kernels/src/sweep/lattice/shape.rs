@@ -229,7 +229,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn impossible_lattices_are_refused() {
+    fn impossible_lattices_are_rejected() {
         let mask = Mask::square(2);
         assert_eq!(
             LatticeShape::new(0, 3, &mask, [false; 2]),
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn shifts_of_the_swept_cells_stay_in_the_padded_lattice() {
+    fn shifts_stay_in_the_padded_lattice() {
         for (columns, rows, half_width) in [(1, 1, 2), (5, 3, 2), (16, 1, 3), (1, 40, 3), (33, 17, 2)] {
             let mask = Mask::square(half_width);
             let shape = LatticeShape::new(columns, rows, &mask, [false; 2]).unwrap();
@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn empty_cells_are_far_from_everything_in_either_precision() {
+    fn empty_cells_are_far_in_both_precisions() {
         let mask = Mask::square(2);
         let shape = LatticeShape::new(300, 200, &mask, [true; 2]).unwrap();
         let frame = Frame { origin: [-3.0, 1e3], edge: [0.5, 0.7] };

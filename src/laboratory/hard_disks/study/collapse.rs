@@ -140,14 +140,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_criterion_of_a_row_is_that_of_three() {
+    fn the_row_criterion_is_exact_for_three_discs() {
         assert!((of_a_row(3.0) - (7.0 - 4.0 * 3f64.sqrt())).abs() < 1e-15);
         assert_eq!(of_a_row(2.0), 0.0);
     }
 
     /// Three discs in a row, compared with 7 − 4√3 = 0.0718.
     #[test]
-    fn three_in_a_row_collapse_below_the_restitution_of_theory() {
+    fn three_discs_collapse_below_the_theoretical_restitution() {
         let [low, high] = row(3).unwrap();
         assert!(low < 0.0719 && high > 0.0708, "{low} {high}");
     }

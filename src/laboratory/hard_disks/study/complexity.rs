@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_logarithm_is_fitted_by_itself_alone() {
+    fn only_a_logarithm_fits_exactly() {
         let on = |discs: f64| [discs, 1e-9 * (200.0 + 30.0 * discs.log2())];
         let all = [1024.0, 16_384.0, 1_048_576.0].map(on);
         let found = Fit::of(all.into_iter());

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn references_agree_with_the_virial_series_and_equations_of_state() {
+    fn references_agree_with_series_and_equations_of_state() {
         for ((nu, z, _), within) in KNOWN.into_iter().zip([1e-7, 2e-6, 5e-5, 8e-4]) {
             assert!((virial_series(nu) / z - 1.0).abs() < within, "{nu}");
         }

@@ -254,7 +254,7 @@ mod tests {
 
     /// Without damping the restitution is 1 and the duration 2.94 δ/v with the depth δ = (5 μ v²/(4 k))^{2/5}; damping lowers the restitution.
     #[test]
-    fn impacts_are_those_of_hertz() {
+    fn impacts_follow_hertz() {
         let Impact { restitution, duration } = impact(1e4, 0.0, 1.5);
         let depth = (1.25 * 0.5 * 1.5 * 1.5 / 1e4_f64).powf(0.4);
         assert!((restitution - 1.0).abs() < 1e-3 && (duration / (2.943 * depth / 1.5) - 1.0).abs() < 2e-3);

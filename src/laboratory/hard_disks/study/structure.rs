@@ -285,7 +285,7 @@ mod tests {
 
     /// A hexagonal crystal has perfect order and six neighbours in the first shell.
     #[test]
-    fn a_crystal_is_in_order() {
+    fn a_crystal_has_perfect_order() {
         let domain = Domain::planar([0.0; 2], [10.0, 10.0 * 3f64.sqrt()], [true; 2]);
         let places: Vec<[f64; 2]> = (0..200)
             .map(|at| {

@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn an_order_that_is_lost_in_the_scatter_is_none() {
+    fn order_within_the_noise_is_none() {
         let known = fluids(100.0, 1e-5, 0.0);
         let Mean { value, bar } = order(&known, SchemeKind::Baoab, limit(&known)).unwrap();
         assert!((value - 2.0).abs() < 0.05 && bar < 0.05, "{value} {bar}");
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn the_temperature_at_the_end_of_the_step_is_compared_with_theory() {
+    fn cooling_is_compared_with_theory() {
         let off = |off: f64| fluids(100.0, 1e-5, off)[3].off_theory().unwrap();
         assert!(off(0.0).abs() < 1e-9 && off(0.001) > 3.0, "{} {}", off(0.0), off(0.001));
     }
@@ -275,7 +275,7 @@ mod tests {
 
     /// Force and curvature equal finite differences of the energy, also across the sides of the box.
     #[test]
-    fn forces_and_curvature_are_differences_of_the_energy() {
+    fn forces_and_curvature_are_energy_differences() {
         let prepared = prepared("langevin-dense", &Overrides::new().set(&COUNT, 300_u64)).unwrap();
         let (start, domain) = (prepared.particles().all().to_vec(), prepared.domain);
         let energy = |all: &[Particle]| -> f64 {

@@ -202,7 +202,7 @@ mod tests {
 
     /// Enskog's theory: at four discs of diameter 0.1 per unit of area diffusion falls to about 0.4 kT/γ; a thin system is not slowed.
     #[test]
-    fn collisions_slow_dense_systems_down() {
+    fn enskog_friction_slows_dense_systems_only() {
         let [dense, thin] = [(40_000, 100.0), (1000, 1000.0)].map(|(particles, side)| {
             let (times, square) = (vec![20.0], vec![[1.0; 2]]);
             let system =

@@ -178,7 +178,7 @@ mod tests {
 
     /// The 20,800 particles that remain in LAN17 would interact three times as often as it reports.
     #[test]
-    fn pairs_at_random_places_are_counted_from_both() {
+    fn random_pairs_are_counted_from_both_particles() {
         assert!((at_random(20_800) - 135_917.9).abs() < 0.1, "{}", at_random(20_800));
     }
 }

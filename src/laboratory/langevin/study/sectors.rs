@@ -206,7 +206,7 @@ mod tests {
     /// Few large sectors, whose pairs all threads find together, give identical bits on any number of threads, and agree with lists up to
     /// rounding; so do more and smaller sectors, which are distributed over the threads.
     #[test]
-    fn sectors_of_every_size_give_the_same_bits_on_any_number_of_threads() {
+    fn sectors_give_identical_bits_on_any_threads() {
         let count = 5200;
         let (_, by_lists) = moved(count, None, 1);
         for per_side in [3, 20, 34] {

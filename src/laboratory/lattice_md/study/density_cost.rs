@@ -285,7 +285,7 @@ mod tests {
 
     /// For a lattice step of NP/ρ and lists of NP² times a power of ρ the powers are recovered.
     #[test]
-    fn powers_of_the_density_come_out() {
+    fn powers_of_the_density_are_recovered() {
         let densities = [0.05, 0.1, 0.2];
         let lattice = densities.map(|rho| curve(rho, move |np| 50.0 * np / rho));
         for (power, expected, spread) in [(0, -1.0, 1.0), (1, -2.0, 4.0)] {

@@ -132,7 +132,7 @@ mod tests {
     use crate::model::machines::{names, preset};
 
     #[test]
-    fn every_machine_has_every_rung_and_chaining_pays_with_functional_units() {
+    fn every_machine_has_every_rung() {
         for name in names() {
             let machine = preset(name).unwrap();
             let ladder = Ladder::of(&Question::default(), &machine).unwrap();
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_rung_is_the_efficiency_table() {
+    fn the_paper_rung_equals_the_efficiency_table() {
         let (question, machine) = (Question::default(), preset("cray-1").unwrap());
         let ladder = Ladder::of(&question, &machine).unwrap();
         let scope = Scope::of(efficiency_table(&question, &machine).unwrap().frames);

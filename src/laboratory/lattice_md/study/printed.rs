@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn every_part_of_the_sources_table_is_timed() {
+    fn every_part_of_the_table_is_timed() {
         let reading = eager(400, 0.5, Choice::default().printed(), 1).unwrap();
         for part in SOURCES_PARTS.map(Part::name) {
             let count = |kind: &str| reading.counts[&format!("{kind} of {part}")];

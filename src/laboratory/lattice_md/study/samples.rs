@@ -66,7 +66,7 @@ mod tests {
     use std::convert::Infallible;
 
     #[test]
-    fn the_median_counts_and_the_halves_are_compared() {
+    fn median_and_halves_of_samples() {
         let mut samples = Samples::default();
         assert_eq!(samples.median(), None);
         [3.0, 2.0, 4.0, 6.0, 5.0, 3.0, 4.0, 6.0, 9.0].into_iter().for_each(|ns| samples.push(ns));
@@ -88,7 +88,7 @@ mod tests {
 
     /// Failed work adds no sample.
     #[test]
-    fn works_that_fail_are_not_timed() {
+    fn failed_work_is_not_timed() {
         let mut all = vec![Samples::default(); 2];
         let work = |at: usize| if at == 1 { Err(at) } else { Ok(()) };
         assert_eq!(Samples::take_in_turns(&mut all, 2, work), Err(1));
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn works_in_turns_are_done_once_before_and_timed_each_by_itself() {
+    fn work_in_turns_is_warmed_up_and_timed() {
         let mut all = vec![Samples::default(); 2];
         let mut order = vec![];
         let work = |at| {

@@ -314,7 +314,7 @@ mod tests {
 
     /// Every case of both sizes is a valid scene, and no case occurs twice.
     #[test]
-    fn every_place_of_the_grids_is_a_scene() {
+    fn every_case_of_the_grids_is_valid() {
         for (grid, count) in [(&QUICK, 21), (&FULL, 161)] {
             let all = places(grid, 2);
             assert_eq!(all.len(), count);

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lattice_of_touching_discs_visits_mostly_empty_places() {
+    fn the_lattice_visits_mostly_empty_cells() {
         let figures = ListFigures { occupancy: 0.25, candidates: 6.0, contacts: 4.0, steps_a_list: 10.0 };
         let [lattice_forces, _, list_forces, list_step] = shares(figures).unwrap();
         // Four of 24 offsets at a quarter of the cells, minus the work done once per cell and in the halo.

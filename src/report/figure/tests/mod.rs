@@ -103,7 +103,7 @@ fn pressing() -> Vec<Figure> {
 }
 
 #[test]
-fn all_words_are_on_the_picture_and_none_upon_others() {
+fn words_are_on_the_picture_without_overlaps() {
     for figure in pressing() {
         let size = tree(&svg(&figure).unwrap()).unwrap().size();
         let all = words(&figure);
@@ -120,7 +120,7 @@ fn all_words_are_on_the_picture_and_none_upon_others() {
 }
 
 #[test]
-fn no_words_lie_on_the_data() {
+fn no_words_cover_the_data() {
     for figure in pressing() {
         // Drawings and the cells of small maps contain words themselves.
         if matches!(figure.picture, Picture::Drawing(_)) || figure.name == "few-cells" {
@@ -136,7 +136,7 @@ fn no_words_lie_on_the_data() {
 }
 
 #[test]
-fn a_very_small_value_is_drawn_where_it_must_be() {
+fn very_small_values_are_drawn_correctly() {
     let mut figure = samples::logarithmic();
     let drawn = chart_of(&mut figure.picture);
     drawn.bands.clear();
@@ -153,7 +153,7 @@ fn a_very_small_value_is_drawn_where_it_must_be() {
 }
 
 #[test]
-fn data_outside_of_given_limits_are_cut_off() {
+fn data_beyond_the_limits_are_clipped() {
     let mut figure = samples::logarithmic();
     let drawn = chart_of(&mut figure.picture);
     drawn.x.limits = Some([10.0, 1000.0]);
@@ -167,7 +167,7 @@ fn data_outside_of_given_limits_are_cut_off() {
 }
 
 #[test]
-fn a_lone_point_of_a_line_is_seen() {
+fn single_points_of_lines_have_markers() {
     let mut figure = samples::linear();
     let drawn = chart_of(&mut figure.picture);
     drawn.series.truncate(1);
@@ -177,7 +177,7 @@ fn a_lone_point_of_a_line_is_seen() {
 }
 
 #[test]
-fn a_narrow_bar_still_says_what_its_ends_mean() {
+fn a_narrow_colour_bar_labels_its_ends() {
     let mut figure = samples::pipe();
     if let Picture::Drawing(drawing) = &mut figure.picture {
         drawing.width = 160.0;
@@ -201,7 +201,7 @@ fn a_drawing_is_not_distorted() {
 }
 
 #[test]
-fn cells_are_where_they_must_be() {
+fn cells_are_drawn_at_their_positions() {
     let mut figure = samples::map();
     if let Picture::Map(map) = &mut figure.picture {
         map.rows = vec![vec![0.0, 0.0, 1.0], vec![1.0, 0.0, 0.0]];
@@ -212,7 +212,7 @@ fn cells_are_where_they_must_be() {
 }
 
 #[test]
-fn faults_are_named() {
+fn error_messages_name_the_fault() {
     let fault = |mut figure: Figure, spoil: fn(&mut Picture)| {
         spoil(&mut figure.picture);
         let error = svg(&figure).unwrap_err();
@@ -302,7 +302,7 @@ fn panels_share_axes_and_one_legend() {
 }
 
 #[test]
-fn values_stand_in_cells_that_have_room() {
+fn large_cells_show_their_values() {
     let of = |figure: &Figure| words(figure).iter().filter(|(words, _)| words == "5.2").count();
     assert_eq!(of(&samples::few_cells()), 2);
     assert_eq!(of(&samples::map()), 0);

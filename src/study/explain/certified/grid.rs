@@ -327,7 +327,7 @@ mod tests {
     /// By hand. The square of an error bar is 16 in a unit of time, known exactly; the transient is 3, so an error of 0.5 without bias takes 64 + 3,
     /// with a bias of 0.1 100 + 3. The speed of a hundred threads makes no plan of several runs cheaper.
     #[test]
-    fn costs_are_over_the_cheapest_that_reaches_the_error() {
+    fn costs_are_relative_to_the_best_configuration() {
         let case = Case::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();
         let (watch, stop) = (Stopwatch::made(400.0), AtomicBool::new(false));
         let trial = Trial { watch: &watch, stop: &stop };

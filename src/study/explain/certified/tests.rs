@@ -71,7 +71,7 @@ fn runs_and_plans_are_counted_once() {
 
 /// Free particles in a heat bath have its temperature, 1, at any step of BAOAB. Time is synthetic.
 #[test]
-fn runs_and_reference_have_the_temperature_of_the_bath() {
+fn runs_and_reference_have_the_bath_temperature() {
     let sets = ["particles.count=200".to_owned()];
     let case = Case::load("langevin-free", &sets, METHODS).unwrap();
     let (watch, stop) = (Stopwatch::made(100.0), AtomicBool::new(false));
@@ -95,7 +95,7 @@ fn runs_and_reference_have_the_temperature_of_the_bath() {
 }
 
 #[test]
-fn work_side_by_side_comes_back_in_order() {
+fn parallel_results_return_in_order() {
     let threads = side_by_side(9, |at| (at, rayon::current_num_threads())).unwrap();
     assert_eq!(threads, (0..9).map(|at| (at, 1)).collect::<Vec<_>>());
 }

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn rest_is_told_from_collapse_and_from_busy_discs() {
+    fn rest_differs_from_collapse_and_activity() {
         assert_eq!(found(1.0, 1e-8, 1), Some((4096, true)));
         // Two discs in step: each bounces half as often.
         assert_eq!(found(1.0, 1e-8, 2), Some((4096, true)));

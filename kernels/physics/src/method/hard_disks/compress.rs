@@ -118,7 +118,7 @@ mod tests {
 
     /// No disc overlaps another or a closed side, at packing fractions that random placement cannot reach.
     #[test]
-    fn discs_grow_until_they_have_their_radii() {
+    fn compression_reaches_the_full_radii() {
         for (packing, spread, periodic) in
             [(0.70, 0.0, [true; 2]), (0.75, 0.1, [true; 2]), (0.70, 0.1, [false; 2])]
         {
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_that_is_too_small_says_so() {
+    fn compression_rejects_too_small_boxes() {
         let domain = Domain::planar([0.0; 2], [2.1; 2], [true; 2]);
         let mut grains = start(domain, 0.6, 0.0, 0.6);
         assert_eq!(compress(&domain, &mut grains, 0.6, 3), Err(Uncompressed::TooSmall));

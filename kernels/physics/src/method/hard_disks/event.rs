@@ -276,7 +276,7 @@ mod tests {
 
     /// Energy and momentum are conserved; e < 1 takes (1 − e²) of the energy of the approach.
     #[test]
-    fn a_collision_keeps_what_it_must() {
+    fn collisions_conserve_momentum_and_balance_energy() {
         let start =
             [disc([5.0, 5.0], [1.0, 0.2]), Disc { mass: 3.0, radius: 0.7, ..disc([8.0, 5.5], [-1.0, 0.1]) }];
         let energy = |discs: &[Disc; 2]| -> f64 {
@@ -311,7 +311,7 @@ mod tests {
 
     /// Calculated by hand: mass 2, thrown with (1, 2) under g = 1, after 3: 2 ∫ 1 + (2 − s)² ds = 2 (3 + (8 + 1)/3); the height is 5 + 6 − 4.5.
     #[test]
-    fn a_flight_has_its_action_and_its_height() {
+    fn flights_have_known_action_and_potential() {
         let domain = Domain::planar([0.0, 1.0], [20.0; 2], [true, false]);
         let arena = Arena::new(domain, [0.0, -1.0], Law::ELASTIC);
         let thrown = Disc { mass: 2.0, ..disc([5.0, 5.0], [1.0, 2.0]) };
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn collisions_too_soon_after_others_are_elastic_where_asked() {
+    fn contact_duration_makes_frequent_collisions_elastic() {
         let arena = periodic(Law { restitution: 0.5, contact_duration: 0.1, ..Law::ELASTIC });
         let made = |before: f64, events: u64| {
             let mut a = Disc { time: -before, events, ..disc([5.0 - before, 5.0], [1.0, 0.0]) };
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_throw_back() {
+    fn walls_reflect_discs() {
         let domain = Domain::planar([1.0, 0.0], [10.0, 10.0], [false, true]);
         let arena = Arena::new(domain, [0.0; 2], Law { wall_restitution: 0.5, ..Law::ELASTIC });
         let mut flying = disc([3.0, 5.0], [-0.5, 7.0]);
@@ -363,7 +363,7 @@ mod tests {
 
     /// The normal velocity off a thermal wall has a mean square of 2 kT/m, the tangential one of kT/m.
     #[test]
-    fn thermal_walls_give_back_their_temperature() {
+    fn thermal_walls_emit_at_their_temperature() {
         let thermal = Thermal { side: (1, false), temperature: 3.0, seed: 5 };
         let domain = Domain::planar([0.0; 2], [10.0, 10.0], [true, false]);
         let arena = Arena::new(domain, [0.0; 2], Law { thermal: Some(thermal), ..Law::ELASTIC });

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disc_that_flies_off_never_does_and_one_that_rests_does_at_once() {
+    fn escaping_discs_miss_and_resting_discs_touch() {
         assert_eq!(FLOOR.meeting(3.0, 1.0, 0.0, 0.0), f64::INFINITY);
         assert_eq!(FLOOR.meeting(0.0, -1.0, -1.0, 0.0), 0.0);
     }

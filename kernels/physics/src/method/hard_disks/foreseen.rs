@@ -146,7 +146,7 @@ mod tests {
 
     /// Expected work by hand: √π ρ d χ(ν) √(kT/m) collisions per disc, at the rate measured for the density (million per second).
     #[test]
-    fn work_is_that_of_the_measured_collisions() {
+    fn expected_work_matches_measured_rates() {
         for (fraction, engine, rate) in [
             (0.1, "auto", 0.764),
             (0.3, "fast", 1.272),
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn costs_of_collisions_are_in_proportion_between_those_known() {
+    fn collision_costs_are_interpolated() {
         for (fraction, cost) in [(0.0, 1310.0), (0.2, 1050.0), (0.6, 433.333), (0.8, 380.0)] {
             let found = of_a_collision(fraction, EngineChoice::Fast);
             assert!((found - cost).abs() < 1e-2, "{fraction}: {found}");

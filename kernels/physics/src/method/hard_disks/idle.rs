@@ -62,7 +62,7 @@ mod tests {
 
     /// Calculated by hand: discs at rest, alone, side by side, passing on straight and slanted lines, and pairs that may meet.
     #[test]
-    fn what_never_meets_is_told_from_what_may() {
+    fn impossible_meetings_are_recognised() {
         let here = disc([2.0, 2.0], [0.0; 2]);
         let (open, closed) = ([true; 2], [true, false]);
         for (periodic, other, is_never) in [

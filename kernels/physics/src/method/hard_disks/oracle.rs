@@ -105,7 +105,7 @@ fn hold(arena: Arena, discs: &[Disc], events: usize) -> usize {
 
 /// Events and times are bitwise equal for all sides, sizes, restitutions and gravities.
 #[test]
-fn events_are_those_of_all_pairs() {
+fn engines_match_the_oracle() {
     let mut fast = 0;
     for (seed, periodic) in [[true, true], [true, false], [false, false]].into_iter().enumerate() {
         for (spread, restitution) in [(0.0, 1.0), (0.1, 0.9)] {
@@ -125,7 +125,7 @@ fn events_are_those_of_all_pairs() {
 
 /// A vibrating floor, with a ceiling and without.
 #[test]
-fn events_above_a_vibrating_floor_are_those_of_all_pairs() {
+fn engines_match_above_a_vibrating_floor() {
     let open = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
     let floor = Floor { amplitude: 0.3, frequency: 0.7 };
     let law = Law { restitution: 0.95, wall_restitution: 0.9, floor: Some(floor), ..Law::ELASTIC };
@@ -137,7 +137,7 @@ fn events_above_a_vibrating_floor_are_those_of_all_pairs() {
 
 /// A thermal floor without a ceiling.
 #[test]
-fn events_above_a_hot_floor_are_those_of_all_pairs() {
+fn engines_match_above_a_thermal_floor() {
     let domain = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
     let thermal = Thermal { side: (1, false), temperature: 2.0, seed: 4 };
     let law = Law { restitution: 0.95, thermal: Some(thermal), ..Law::ELASTIC };
@@ -147,7 +147,7 @@ fn events_above_a_hot_floor_are_those_of_all_pairs() {
 
 /// Discs on a square lattice with velocities along it collide pairwise at equal times, again and again.
 #[test]
-fn meetings_at_one_time_come_in_the_order_of_the_numbers() {
+fn simultaneous_events_are_ordered_by_number() {
     let domain = Domain::planar([0.0; 2], [24.0; 2], [true; 2]);
     let disc = |number: u32| Disc {
         position: [f64::from(number % 6) * 4.0 + 2.0, f64::from(number / 6) * 4.0 + 2.0],
@@ -164,7 +164,7 @@ fn meetings_at_one_time_come_in_the_order_of_the_numbers() {
 
 /// 10⁵ collisions of 200 discs: energy and momentum are conserved to rounding, no discs overlap, and both engines agree to the end.
 #[test]
-fn energy_and_momentum_stay() {
+fn engines_conserve_energy_and_momentum() {
     let domain = Domain::planar([0.0; 2], [19.0, 18.0], [true; 2]);
     let discs = random(&domain, 200, 0.1, 5);
     let arena = Arena::new(domain, [0.0; 2], Law::ELASTIC);

@@ -281,7 +281,7 @@ mod tests {
     /// In both precisions, every execution on every instruction set gives the same bits. They match the shifted potential to rounding, and vanish
     /// beyond the cut-off.
     #[test]
-    fn sweeps_find_what_is_stated() {
+    fn sweeps_match_the_shifted_potential() {
         for (word, law) in laws() {
             let (potential, cutoff) = (law.potential(), law.cutoff());
             let near = potential.closest(300.0);
@@ -318,7 +318,7 @@ mod tests {
     /// Values calculated earlier from the Lennard-Jones formula: lattice cells for pairs as near as 0.82 σ, and starts with overlaps of up to
     /// 0.25 σ. Only the longer cut-off leaves attraction.
     #[test]
-    fn scenes_know_of_a_law_what_follows_from_its_potential() {
+    fn scene_bounds_follow_from_the_potential() {
         let parameters = Parameters::default();
         for (law, attracts) in [(PairLaw::Wca, false), (PairLaw::LennardJones, true)] {
             assert_eq!([30.0, 100.0].map(|energies| law.nearest(&parameters, energies)), [0.82, 0.75]);

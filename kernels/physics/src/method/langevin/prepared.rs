@@ -225,7 +225,7 @@ mod tests {
 
     /// The bath of baoab is exact: free particles reach the same velocity as with shorter steps, to rounding, unless the noise differs.
     #[test]
-    fn free_particles_with_the_same_noise_end_at_the_same_velocity() {
+    fn baoab_bath_is_exact_for_free_particles() {
         for parts in [1, 2, 3, 8_u32] {
             let at = |dt| prepared("langevin-free", &["particles.count=300"], dt);
             let [long, short] =
@@ -241,7 +241,7 @@ mod tests {
     /// with the first power of the step, for LAN17's scheme with its root, because each misses half a kick at the start. With other noise they
     /// stay equally far apart.
     #[test]
-    fn paths_with_the_same_noise_come_together_with_the_step() {
+    fn same_noise_trajectories_converge_with_the_step() {
         const PART: f64 = 0.0005;
         for (scheme, least) in [("baoab", 1.7), ("stochastic", 1.25)] {
             let integrator = format!("integrator.kind={scheme}");
@@ -262,7 +262,7 @@ mod tests {
 
     /// One part and the scene's own seed reproduce the scene bitwise; without friction or temperature there is no noise.
     #[test]
-    fn one_part_changes_nothing() {
+    fn a_single_noise_part_changes_nothing() {
         let own = prepared("langevin-dense", &["particles.count=100", "domain.sides=[12.0, 12.0]"], 0.005);
         let mut simulation = own.start(Purpose::Measurement).unwrap();
         simulation.advance(&[Until::Steps(20)], &AtomicBool::new(false)).unwrap();

@@ -88,7 +88,7 @@ mod tests {
 
     /// Forces of the program over the whole lattice match the sum over all pairs to rounding, in eager, strip-mined and chained execution.
     #[test]
-    fn the_program_finds_the_forces_of_all_pairs() {
+    fn program_forces_match_all_pairs() {
         for (_, law) in PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs()) {
             let overrides = [
                 format!("law.kind={law}"),

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn energy_that_is_made_or_lost_is_said_with_its_number() {
+    fn energy_drift_is_warned_with_its_number() {
         let off = |balance_error: f64| {
             let balance = Balance { balance_error, ..Balance::default() };
             energy(&balance, 2.0).map(|warning| (warning.value, warning.message))
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_counted_is_not_said() {
+    fn zero_counts_give_no_warning() {
         assert_eq!(counted(&Totals::default()), []);
         let mut totals = Totals::default();
         totals.long_steps = 3;

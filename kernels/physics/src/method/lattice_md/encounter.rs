@@ -79,7 +79,7 @@ mod tests {
     /// Head-on discs separate with the restitution of the law, checked by another solver; beyond contact they fly on; an elastic encounter conserves
     /// the speed.
     #[test]
-    fn two_discs_meet_as_the_law_says() {
+    fn encounter_restitution_matches_the_law() {
         let known = vocabularies(METHODS);
         let gas = Values::load("dense-gas", &["particles.count=100".to_owned()], &known).unwrap();
         let stiffness = gas.number(&STIFFNESS).unwrap();

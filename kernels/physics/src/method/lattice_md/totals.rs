@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn totals_come_back_from_their_entries() {
+    fn totals_round_trip_through_entries() {
         let totals = Totals {
             deep_disc_steps: 1,
             deepest: 0.25,

@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_bodies_are_summed_as_it_is_written() {
+    fn few_bodies_use_the_direct_sum() {
         let engine = |bodies, precision, arithmetic| {
             let mut scene = Scene { engine: Engine::Auto, precision, arithmetic, ..Scene::default() };
             let said = choose(&mut scene, bodies);
@@ -72,7 +72,7 @@ mod tests {
 
     /// A slow start is reported, and the requested engine stays.
     #[test]
-    fn a_slow_start_is_said() {
+    fn slow_starts_are_reported() {
         let said = |scheme, engine| {
             let mut scene = Scene { scheme, engine, ..Scene::default() };
             let said = choose(&mut scene, 100);

@@ -64,7 +64,7 @@ mod tests {
 
     /// Compared with all pairs, repeatedly after small moves; also for bodies on lines and planes.
     #[test]
-    fn the_nearest_are_those_of_all_pairs() {
+    fn nearest_pair_matches_all_pairs() {
         let mut random = Stream::new(3, Purpose::Test, 0);
         for count in [0, 1, 2, 3, 17, 200] {
             for flat in 0..4 {
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_near_nothing() {
+    fn nan_positions_are_ignored() {
         let position = [vec![0.0, f64::NAN, 3.0, 4.0], vec![0.0; 4], vec![0.0; 4]];
         let found = Encounters::default().nearest(&position, 4).unwrap();
         assert_eq!((found.bodies, found.distance), ([2, 3], 1.0));

@@ -291,7 +291,7 @@ mod tests {
 
     /// The series derivatives match finite differences of the acceleration along the path, and the sweep's jerk.
     #[test]
-    fn derivatives_are_those_of_the_motion() {
+    fn derivatives_match_the_motion() {
         let mut scene = Scene { softening: 0.2, gravitational_constant: 3.7, ..Scene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
         let of = bodies(&scene.start, 0.2, 1.0);
@@ -352,7 +352,7 @@ mod tests {
 
     /// The reference and all other engines agree within their precision.
     #[test]
-    fn ways_agree() {
+    fn force_engines_agree() {
         let mut scene = Scene { softening: 0.05, gravitational_constant: 0.31, ..Scene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
         let of = bodies(&scene.start, 0.05, 1.0);

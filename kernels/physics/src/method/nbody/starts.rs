@@ -215,7 +215,7 @@ mod tests {
 
     /// An ellipse of semi-major axis 1 has the energy −½ m₁ m₂, a uniform sphere −3/5; the virial ratio is as requested.
     #[test]
-    fn energies_are_those_of_the_books() {
+    fn start_energies_match_the_literature() {
         for (eccentricity, ratio) in [(0.0, 1.0), (0.5, 1.0), (0.9, 0.1)] {
             let bodies = kepler(eccentricity, ratio);
             let energy = kinetic(&bodies) + potential(&bodies, 0.0);
@@ -257,7 +257,7 @@ mod tests {
 
     /// The virial ratio of every start due to gravity is independent of the constant; given speeds stay.
     #[test]
-    fn velocities_go_with_the_root_of_the_constant() {
+    fn velocities_scale_with_root_g() {
         for kind in [StartKind::Kepler, StartKind::FigureEight, StartKind::Plummer, StartKind::Sphere] {
             let start = Start { virial: 0.5, ..start(kind, 100) };
             let [one, other] = [1.0, 6.6743e-11].map(|constant| {

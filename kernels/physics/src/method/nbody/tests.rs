@@ -75,7 +75,7 @@ where
 
 /// A failing sweep stops the run before a row is written; unknown values are NaN, not 0.
 #[test]
-fn a_sweep_that_fails_is_no_row_of_zeros() {
+fn failing_sweeps_write_no_row() {
     let mut running = started("plummer", &["particles.count=65"]);
     advance(&mut running, 1).unwrap();
     between(&mut running, |_, _, _, _, _| Err(ProgramError::EmptyStrip));
@@ -87,7 +87,7 @@ fn a_sweep_that_fails_is_no_row_of_zeros() {
 
 /// A row needs no sweep beyond that of its step, and one sweep serves all output of a state.
 #[test]
-fn a_row_is_observed_once() {
+fn rows_need_no_extra_sweep() {
     let mut running = started("plummer", &["particles.count=100", "run.thermo_every=8"]);
     let sweeps = Arc::new([0, 0].map(AtomicUsize::new));
     let counted = Arc::clone(&sweeps);
@@ -120,7 +120,7 @@ fn a_row_is_observed_once() {
 /// A step interrupted between two tiles is discarded: the state is that of the last whole step. Resumption from there gives the bits and
 /// the counts of an uninterrupted run. Holds for every scheme and engine, and any moment of the step.
 #[test]
-fn an_interrupted_step_is_not_taken() {
+fn interrupted_steps_are_discarded() {
     for (scheme, _) in SchemeName::ALL {
         for engine in ["fast", "programs"] {
             let sets = [
@@ -182,7 +182,7 @@ fn largest_error(running: &mut Running, steps: u64) -> f64 {
 
 /// A hard pair far from the centre conserves its energy in mixed precision as well as in double precision.
 #[test]
-fn a_hard_pair_is_as_good_far_from_the_middle() {
+fn distant_hard_pairs_conserve_energy() {
     // Two masses of 1 on a circle of diameter 0.001: the speed of each is √500.
     let v = 500f64.sqrt();
     let bodies = format!(
@@ -207,7 +207,7 @@ fn a_hard_pair_is_as_good_far_from_the_middle() {
 
 /// Masses and lengths far from 1 are scaled if the number format has a narrow range.
 #[test]
-fn light_bodies_do_not_fly_straight() {
+fn mixed_precision_scales_masses_and_lengths() {
     for (mass, length) in [(1e-25, 1.0), (1.0, 1e-15), (1e25, 1e12)] {
         // Two equal bodies on a circle; a quarter of an orbit in 50 steps.
         let speed = 0.5 * f64::sqrt(2.0 * mass / length);
@@ -232,7 +232,7 @@ fn light_bodies_do_not_fly_straight() {
 
 /// A temporary energy error causes a warning with its time and the nearest pair, even if it is gone at the end.
 #[test]
-fn an_encounter_followed_badly_is_warned_of() {
+fn inaccurate_encounters_cause_a_warning() {
     // Two bodies on an ellipse of eccentricity 0.97, from the farthest point back to it.
     let bodies = "particles.bodies=[[0.5, 0.985, 0.0, 0.0, 0.0, 0.0617, 0.0], [0.5, -0.985, 0.0, 0.0, 0.0, -0.0617, 0.0]]";
     let leapfrog = ["integrator.kind=leapfrog", "integrator.dt=0.001", "run.steps=6283"];
@@ -255,7 +255,7 @@ fn an_encounter_followed_badly_is_warned_of() {
 /// Many bodies are checked every 64 steps and at the end: a loss in between is found, and a meaningless energy is not reported in
 /// percent.
 #[test]
-fn what_is_lost_in_the_last_steps_is_found() {
+fn losses_in_the_last_steps_are_detected() {
     let mut running = started("plummer", &["particles.count=100", "run.steps=70", "run.thermo_every=0"]);
     advance(&mut running, 66).unwrap();
     running.state.bodies.velocity.iter_mut().flatten().for_each(|v| *v *= 300.0);
@@ -268,7 +268,7 @@ fn what_is_lost_in_the_last_steps_is_found() {
 
 /// Two bodies that meet are reported with their position and a remedy.
 #[test]
-fn bodies_that_meet_are_named() {
+fn colliding_bodies_are_reported() {
     for engine in ["fast", "reference"] {
         // After half a unit of time they are at one position: before the forces in one scheme, after them in the other.
         for (kind, v) in [("damped-euler", 0.5), ("leapfrog", 0.75)] {
@@ -291,7 +291,7 @@ fn bodies_that_meet_are_named() {
 /// Two spheres of 1 kg, 0.1 m apart, in SI units: each falls G/d² · t²/2, in 0.2 s 1.33486e-10 m, with every engine. A given constant is
 /// used in any units; other units default to 1.
 #[test]
-fn gravity_has_the_constant_of_its_units() {
+fn gravitational_constant_follows_the_units() {
     let bodies = "particles.bodies=[[1.0, -0.05, 0, 0, 0, 0, 0], [1.0, 0.05, 0, 0, 0, 0, 0]]";
     let constant = |units: &str, dt: f64, more: &[&str]| {
         let (units, step) = (format!("units={units}"), format!("integrator.dt={dt:?}"));
@@ -322,7 +322,7 @@ fn gravity_has_the_constant_of_its_units() {
 
 /// The Earth returns to its position after a sidereal year of 365.25636 days, and is on the other side of the Sun after half a year.
 #[test]
-fn the_earth_needs_a_year_around_the_sun() {
+fn the_earth_orbits_in_a_sidereal_year() {
     let bodies =
         "particles.bodies=[[1.98841e30, 0, 0, 0, 0, 0, 0], [5.9722e24, 1.49598e11, 0, 0, 0, 29784.7, 0]]";
     let dt = format!("integrator.dt={:?}", 365.25636 * 86400.0 / 2000.0);
@@ -347,7 +347,7 @@ fn the_earth_needs_a_year_around_the_sun() {
 
 /// Sixteen stars within a parsec, in metres: every engine, scheme and precision gives the energies of the direct sum.
 #[test]
-fn far_bodies_run_without_softening() {
+fn parsec_distances_run_without_softening() {
     let rows: Vec<String> = (0..17)
         .map(|n| {
             let place = |k: usize| 3e16 * ((n * k) as f64 * 0.7548776662466927).fract() - 1.5e16;
@@ -386,7 +386,7 @@ fn far_bodies_run_without_softening() {
 
 /// A light body escapes at speed 1e18, to where numbers are coarser than 1: the others move as without it.
 #[test]
-fn a_body_that_escapes_disturbs_nothing() {
+fn escaping_bodies_disturb_no_others() {
     let rows: Vec<String> = (0..15)
         .map(|n| {
             let place = |k: usize| 2.0 * ((n * k) as f64 * 0.7548776662466927).fract() - 1.0;

@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_found_though_one_point_was_disturbed() {
+    fn the_fit_ignores_a_disturbed_point() {
         let line = |disturbed: f64| {
             let ns = |n: f64| (5.0 + 0.25 * n) * if n == 64.0 { disturbed } else { 1.0 };
             suited(&[8.0, 16.0, 64.0, 128.0, 256.0, 512.0].map(|n| Row { features: [n, 1.0], ns: ns(n) }))

@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_most_points_do_not_know_is_unknown() {
+    fn median_needs_a_majority_of_known_values() {
         let of = |values: &[Option<f64>]| middle_of_most(values.iter().copied());
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[None, None, Some(0.1)]), None);

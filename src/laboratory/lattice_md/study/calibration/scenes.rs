@@ -100,7 +100,7 @@ mod tests {
 
     /// The majority determines the fit even if runs scatter by a factor of a thousand, as on a busy machine. A unit without work costs nothing.
     #[test]
-    fn scattered_runs_do_not_drive_units_away() {
+    fn scattered_runs_do_not_bias_units() {
         let done = |(at, scatter): (usize, f64)| {
             let amounts = Amounts { discs: 100.0 * 4f64.powi(at as i32), ..Amounts::default() };
             (amounts, 2.0 * scatter * amounts.discs)
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn discs_and_contacts_are_told_apart() {
+    fn discs_and_contacts_are_distinguished() {
         let done = |discs: f64, contacts: f64| {
             (Amounts { discs, contacts, ..Amounts::default() }, 2.0 * discs + 5.0 * contacts)
         };

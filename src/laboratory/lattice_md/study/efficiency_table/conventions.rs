@@ -172,7 +172,7 @@ mod tests {
 
     /// For the conventions of the printed program and of ours, the counts here equal those of the programs that run.
     #[test]
-    fn counted_schemes_are_those_that_run() {
+    fn counted_schemes_equal_the_running_programs() {
         for gear_values in 4..=6 {
             for (choice, scaled) in
                 [(question(gear_values).choice, false), (Choice { gear_values, ..Choice::default() }, true)]
@@ -203,7 +203,7 @@ mod tests {
 
     /// Counted by hand, an offset of the printed program has 58 computing operations, 8 shifted copies and 3 sums.
     #[test]
-    fn a_place_of_the_printed_text_counted_by_hand() {
+    fn operations_of_an_offset_match_a_hand_count() {
         let texts = Texts::of(&question(5)).unwrap();
         let place = |stores, shifts| {
             texts.counted(Way(5, [false, true, true, false, stores, false, shifts, false])).counts[2]

@@ -1,7 +1,7 @@
 //! Contact law with one of BP93's misprints, for this study only.
 //!
 //! The law is written equation by equation, separately from the law of runs ([`granular`](stripmine_kernels::law::granular)), which contains no
-//! deliberate errors. Without a misprint the two laws agree: `without_a_misprint_this_law_is_ours` in `tests.rs`.
+//! deliberate errors. Without a misprint the two laws agree: `without_misprint_the_laws_agree` in `tests.rs`.
 
 use stripmine_kernels::isa::{Predicate, Vector};
 use stripmine_kernels::law::granular::Contact;

@@ -10,7 +10,7 @@ fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
 
 /// Control of the tests below: without a misprint this law equals the corrected law.
 #[test]
-fn without_a_misprint_this_law_is_ours() {
+fn without_misprint_the_laws_agree() {
     let (ours, theirs) = (ours(CONTACT), AsPrinted { contact: CONTACT, misprint: None });
     for pair in random_pairs(9, 500) {
         let (ours, theirs) = (pair.sums(&ours), pair.sums(&theirs));
@@ -41,7 +41,7 @@ fn energies<L: Law<2>>(law: &L, offset: f64, stiffness: Option<f64>) -> (f64, f6
 /// (14) as printed adds energy: a frictionless head-on collision ends faster than it began. With the corrected law it ends slower, and
 /// without damping equally fast.
 #[test]
-fn printed_14_makes_kinetic_energy_grow_in_a_head_on_collision() {
+fn printed_14_adds_kinetic_energy_head_on() {
     let contact =
         Contact { normal_damping: 0.18, friction: 0.0, shear_damping: 0.0, cohesionless: false, ..CONTACT };
     let (before, printed) = energies(&printed(Misprint::NormalDamping, contact), 0.0, None);
@@ -57,7 +57,7 @@ fn printed_14_makes_kinetic_energy_grow_in_a_head_on_collision() {
 /// (15) as printed bounds only positive forces: a sliding contact violates the Coulomb bound for v_t > 0, satisfies it for v_t < 0, and
 /// is not mirror symmetric.
 #[test]
-fn printed_15_bounds_one_side_only() {
+fn printed_15_bounds_positive_forces_only() {
     let contact = Contact { shear_damping: 1000.0, cohesionless: false, ..CONTACT };
     let (printed, ours) = (printed(Misprint::CoulombBound, contact), ours(contact));
     for speed in [1.0, -1.0] {
@@ -80,7 +80,7 @@ fn printed_15_bounds_one_side_only() {
 
 /// (16) as printed gives slip for rolling discs and none for equal spins.
 #[test]
-fn printed_16_makes_a_gear_pair_slip() {
+fn printed_16_lets_rolling_discs_slip() {
     let contact = Contact { cohesionless: false, ..CONTACT };
     let (printed, ours) = (printed(Misprint::Slip, contact), ours(contact));
     let gears = Pair::gears(1.0);
@@ -96,7 +96,7 @@ fn printed_16_makes_a_gear_pair_slip() {
 
 /// (16) as printed adds energy in an oblique collision without normal damping; the corrected law dissipates.
 #[test]
-fn printed_16_makes_energy_grow_in_an_oblique_collision() {
+fn printed_16_adds_energy_in_oblique_collisions() {
     let contact =
         Contact { normal_damping: 0.0, shear_damping: 40.0, friction: 5.0, cohesionless: false, ..CONTACT };
     let (before, printed) = energies(&printed(Misprint::Slip, contact), 1.4, None);
@@ -109,7 +109,7 @@ fn printed_16_makes_energy_grow_in_an_oblique_collision() {
 /// (10)–(11) as printed, with the tangent (n_y, −n_x), change the angular momentum of the pair by −(2(R_i + R_j) − ξ) F_S instead of
 /// −ξ F_S.
 #[test]
-fn printed_10_and_11_break_the_rule_of_angular_momentum() {
+fn printed_10_and_11_violate_angular_momentum() {
     let contact = Contact { cohesionless: false, ..CONTACT };
     let (printed, ours) = (printed(Misprint::Tangent, contact), ours(contact));
     let mut largest = 0.0f64;
@@ -135,7 +135,7 @@ const ROUNDING: f64 = 1e-9;
 const VISIBLE: f64 = 0.01;
 
 #[test]
-fn every_printed_form_fails_and_ours_holds() {
+fn printed_forms_fail_and_corrected_forms_hold() {
     for finding in findings(&head_on(), &sliding()) {
         let Finding { misprint, quantity, right: (relation, right), by: [by_printed, by_ours], .. } = finding;
         let missed = |value: f64| match relation {
@@ -149,7 +149,7 @@ fn every_printed_form_fails_and_ours_holds() {
 
 /// As printed the energy rises from 0.500 to 0.536; with the corrected law it never rises, and without damping it is conserved.
 #[test]
-fn printed_14_feeds_energy_into_a_head_on_collision() {
+fn printed_14_raises_total_energy() {
     let head_on = head_on();
     let ([start, before, _, undamped], [end, printed, ours, undamped_last]) =
         (head_on[0], head_on[head_on.len() - 1]);
@@ -162,7 +162,7 @@ fn printed_14_feeds_energy_into_a_head_on_collision() {
 }
 
 #[test]
-fn collisions_are_over_when_they_are_judged() {
+fn collisions_end_before_they_are_judged() {
     fn depth<L: Law<2>>(law: L, offset: f64, steps: usize) -> f64 {
         path(Pair::colliding(offset), &law).nth(steps).unwrap().depth()
     }
@@ -178,7 +178,7 @@ fn collisions_are_over_when_they_are_judged() {
 
 /// For v_t > 0 the printed form exceeds the bound, for v_t < 0 it equals the corrected form; below the bound both are viscous.
 #[test]
-fn printed_15_leaves_the_bound_on_one_side_only() {
+fn printed_15_exceeds_the_bound_for_positive_slip() {
     let sliding = sliding();
     let ends = [sliding[0], sliding[sliding.len() - 1]];
     assert_eq!(ends.map(|at| at[0]), [-LARGEST_SLIP, LARGEST_SLIP]);

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_counted_group_by_group() {
+    fn errors_are_grouped() {
         let cases = [
             case(102.0, "eager", "forces"),
             case(92.0, "eager", "index"),

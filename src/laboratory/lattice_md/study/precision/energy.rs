@@ -146,7 +146,7 @@ mod tests {
 
     /// Two seeds and four samples, computed by hand.
     #[test]
-    fn figures_are_over_seeds_and_windows() {
+    fn statistics_cover_seeds_and_windows() {
         let runs = [vec![1.0, -1.0, 3.0, 4.0], vec![1.0, 1.0, -3.0, -4.0]];
         let OverSeeds { deviations, spreads: [largest, last, drift] } = over_seeds(STEPPINGS[0].2, &runs);
         assert_eq!(deviations, [(2.5, 1.0), (5.0, 1.0), (8.75, 12.5f64.sqrt())]);
@@ -156,7 +156,7 @@ mod tests {
 
     /// The energy stays bounded in every precision, a smaller step conserves it better, and the runs use the requested precision.
     #[test]
-    fn energy_is_kept_in_every_precision() {
+    fn energy_is_bounded_in_every_precision() {
         let of = |stepping, precision| deviations(stepping, precision, 1, 3000).unwrap();
         let rms = |run: &[f64]| (run.iter().map(|d| d * d).sum::<f64>() / run.len() as f64).sqrt();
         let runs = PRECISIONS.map(|precision| of(STEPPINGS[0], precision));

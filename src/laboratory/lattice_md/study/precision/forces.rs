@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_relative_to_the_mean_square_of_the_forces() {
+    fn errors_are_relative_to_the_rms_force() {
         let exact = [[3.0, 4.0, 9.0], [0.0, -5.0, 9.0]];
         let [rms, largest] = errors(&exact, &[[3.0, 4.0, 0.0], [0.3, -5.4, 0.0]]);
         assert!((largest - 0.1).abs() < 1e-15 && (rms - 0.1 / 2f64.sqrt()).abs() < 1e-15, "{rms} {largest}");
@@ -101,7 +101,7 @@ mod tests {
 
     /// In lower precision errors do not depend on the size of the box, unless positions are relative to its corner.
     #[test]
-    fn errors_do_not_depend_on_the_box_but_from_its_corner() {
+    fn cell_relative_errors_are_independent_of_the_box() {
         let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
         let rms = |it: &Configuration, name: &str| {
             it.errors[VARIANTS.iter().position(|(variant, ..)| *variant == name).unwrap()][0]

@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn growth_is_that_of_an_exponential_between_rounding_and_loss() {
+    fn growth_rate_of_an_exponential_is_recovered() {
         let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
         let distances: Vec<f64> = times.iter().map(|t| (1e-12 + 1e-13 * (2.0 * t).exp()).min(0.3)).collect();
         assert!((growth(&times, &distances) - 2.0).abs() < 0.05);
@@ -116,7 +116,7 @@ mod tests {
 
     /// Trajectories diverge earlier at lower precision, starting from an error of the size of rounding.
     #[test]
-    fn trajectories_part_in_the_order_of_their_precision() {
+    fn lower_precision_diverges_earlier() {
         let [double, mixed, single] = distances(&place(PARTICLES, 0.84, 1), 200).unwrap();
         for sample in 0..2 {
             assert!(double[sample] < 1e-3 * mixed[sample] && mixed[sample] < single[sample]);

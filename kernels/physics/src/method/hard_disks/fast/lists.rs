@@ -314,7 +314,7 @@ mod tests {
 
     /// Compared with all pairs as discs move, in boxes of every kind of side.
     #[test]
-    fn lists_hold_what_is_near_and_nothing_twice() {
+    fn lists_match_a_search_over_pairs() {
         let mut stream = Stream::new(11, Purpose::Test, 0);
         let open = Domain { origin: [-3.0, 2.0, 0.0], sides: [Side::Periodic(30.0), Side::Open, Side::Flat] };
         let planar = |periodic| Domain::planar([-3.0, 2.0], [30.0, 25.0], periodic);

@@ -292,7 +292,7 @@ mod tests {
 
     /// Compared with a linear search, with occasional equal times, as events occur and times change.
     #[test]
-    fn events_come_in_order_whatever_changes() {
+    fn queue_keeps_order_under_changes() {
         let mut stream = Stream::new(7, Purpose::Test, 0);
         for count in [1usize, 2, 16, 17, 300, 5000] {
             let mut times = vec![f64::INFINITY; count];

@@ -64,7 +64,7 @@ mod tests {
 
     /// Dense systems prefer the smallest mask, dilute ones a larger one. ISO99 section 4.
     #[test]
-    fn the_mask_grows_as_discs_become_rare() {
+    fn dilute_systems_prefer_larger_masks() {
         let best = |packing: f64| {
             let count = 1000;
             let side = (f64::from(count) * std::f64::consts::FRAC_PI_4 / packing).sqrt();
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn masks_that_do_not_serve_cost_without_end() {
+    fn unsuitable_masks_have_infinite_cost() {
         let domain = Domain::planar([0.0; 2], [6.0; 2], [true; 2]);
         let cost = |name: &str, radii: [f64; 2]| {
             candidates(&domain, radii, 10).into_iter().find(|it| it.name == name).unwrap().predictions

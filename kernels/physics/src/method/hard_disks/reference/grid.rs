@@ -177,7 +177,7 @@ mod tests {
 
     /// Random discs: the mask contains every disc within its reach, also across periodic sides.
     #[test]
-    fn a_mask_shows_everything_within_its_reach() {
+    fn masks_cover_everything_within_reach() {
         let mut stream = Stream::new(11, Purpose::Test, 0);
         for (periodic, mask) in [
             ([true, true], Mask::square(2)),
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn two_in_a_cell_are_named() {
+    fn shared_cells_are_reported() {
         let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
         let mut grid = Grid::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2));
         let places = vec![[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]];

@@ -128,7 +128,7 @@ mod tests {
 
     /// Calculated by hand: neighbours beside, above and across the side. One disc at a height of 10⁵ needs blocks for all rows below.
     #[test]
-    fn a_mask_finds_the_discs_of_the_occupied_cells() {
+    fn masks_find_discs_in_occupied_cells() {
         let places = vec![[0.6, 0.6], [1.7, 0.6], [0.6, 1.7], [9.8, 0.6], [5.0, 1e5]];
         for (periodic, near) in [(true, vec![1, 2, 3]), (false, vec![1, 2])] {
             let mut cells = half_space(periodic);
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn two_in_a_cell_and_one_too_high_are_named() {
+    fn shared_cells_and_high_discs_are_reported() {
         let mut cells = half_space(true);
         let fill = |cells: &mut HalfSpace, places: &[[f64; 2]]| cells.fill(places.to_vec());
         assert_eq!(fill(&mut cells, &[[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]]), Err(Misfit::Shared([0, 2])));

@@ -78,7 +78,7 @@ mod tests {
     use stripmine_kernels::noise::{Purpose, Stream};
 
     #[test]
-    fn the_first_is_the_smallest_after_every_change() {
+    fn tournament_root_holds_the_smallest_key() {
         let mut stream = Stream::new(7, Purpose::Test, 0);
         for count in [1usize, 2, 3, 17, 64, 100] {
             let mut keys: Vec<f64> = (0..count).map(|_| stream.random_range(0..8) as f64).collect();

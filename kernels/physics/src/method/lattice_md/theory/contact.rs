@@ -52,7 +52,7 @@ mod tests {
 
     /// Compared with a contact integrated in 10⁵ steps.
     #[test]
-    fn duration_and_depth_are_those_of_a_contact_that_is_followed() {
+    fn duration_and_depth_match_an_integrated_contact() {
         for spring in [Spring::Hertz, Spring::Linear] {
             let contact = head_on(spring);
             let force = |overlap: f64, _: f64| {
@@ -73,7 +73,7 @@ mod tests {
 
     /// Energy, stiffness and depth at rest are consistent with the force.
     #[test]
-    fn what_a_spring_says_follows_from_its_force() {
+    fn spring_quantities_are_consistent_with_the_force() {
         let number = |number: f64| number;
         for spring in [Spring::Hertz, Spring::Linear] {
             let law = head_on(spring).law;

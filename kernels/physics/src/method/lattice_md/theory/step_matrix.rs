@@ -109,7 +109,7 @@ mod tests {
         [Scheme::Gear(GearValues::Four), Scheme::Gear(GearValues::Five), Scheme::Gear(GearValues::Six)];
 
     #[test]
-    fn velocity_verlet_bears_two_radians_of_a_spring() {
+    fn velocity_verlet_limit_is_two_radians() {
         for below in [0.1, 1.0, 1.9] {
             let radius = spectral_radius(Scheme::VelocityVerlet, below * below, 0.0);
             assert!((radius - 1.0).abs() < 1e-8, "{radius}");
@@ -121,7 +121,7 @@ mod tests {
 
     /// On a spring alone, the eigenvalues of velocity Verlet are the roots of λ² − (2 − ω² dt²) λ + 1.
     #[test]
-    fn radii_are_those_of_the_characteristic_polynomial() {
+    fn radii_match_the_characteristic_polynomial() {
         for spring in [4.5f64, 6.0, 10.0] {
             let half = 1.0 - 0.5 * spring;
             let expected = half.abs() + (half * half - 1.0).sqrt();
@@ -132,7 +132,7 @@ mod tests {
 
     /// Limits are 6/11, 3/10 and, measured in runs, 0.163.
     #[test]
-    fn drag_is_borne_as_far_as_measured() {
+    fn drag_limits_match_measurements() {
         for (scheme, measured) in GEAR.into_iter().zip([6.0 / 11.0, 0.3, 0.1633]) {
             let limit = largest_step(scheme, 0.0, 1.0).unwrap();
             assert!((limit - measured).abs() < 1e-4, "{scheme:?} {limit}");
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_coefficient_is_found_out() {
+    fn wrong_coefficient_is_detected() {
         let radius = radius_of(right(), 4, 0.01, 0.0);
         assert!(radius < 1.001, "{radius}");
         let radius = radius_of(Wrong, 4, 0.01, 0.0);

@@ -118,7 +118,7 @@ mod tests {
 
     /// The kink of Hertz's force limits velocity Verlet to an order of 2½, the jump of the damping any scheme to 1.
     #[test]
-    fn errors_fall_as_the_law_lets_them() {
+    fn error_order_is_limited_by_the_law() {
         let elastic = error(0.0, Scheme::VelocityVerlet, 60.0);
         assert!((elastic.order - 2.5).abs() < 0.3, "{elastic:?}");
         for scheme in [Scheme::VelocityVerlet, Scheme::Gear(GearValues::Five)] {
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn few_steps_a_contact_err_much_and_many_little() {
+    fn contact_error_falls_with_more_steps() {
         let scheme = Scheme::Gear(GearValues::Four);
         let [few, many] = [4.0, 100.0].map(|steps| error(0.0, scheme, steps).energy);
         assert!(few > 0.03 && many < 1e-3, "{few} {many}");

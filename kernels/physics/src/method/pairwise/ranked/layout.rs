@@ -103,7 +103,7 @@ mod tests {
 
     /// Every band has one rank, every rank a band, and no rank has much more than its share.
     #[test]
-    fn bands_are_dealt_out_by_their_weight() {
+    fn bands_are_distributed_by_weight() {
         let rows = Rows { count: 640, ahead: 2, band: 16 };
         let bands = rows.bands().len() as u64;
         for ranks in [1, 2, 3, 7, 8, 40] {
@@ -128,7 +128,7 @@ mod tests {
 
     /// Sides form a ring if rows are periodic, and a stack if they are not.
     #[test]
-    fn rows_near_a_rank_lie_on_one_side_of_it() {
+    fn nearby_rows_have_one_side() {
         let rows = Rows { count: 64, ahead: 2, band: 16 };
         for is_periodic in [true, false] {
             let layout = Layout::new(rows, is_periodic, &[1; 4], 4);

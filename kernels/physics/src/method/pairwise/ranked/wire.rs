@@ -245,7 +245,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn messages_are_read_as_they_were_sent(
+        fn messages_survive_the_round_trip(
             crossed in prop::collection::vec((any::<usize>(), crossed()), 0..3),
             is_to_migrate: bool,
             what in what(),
@@ -274,7 +274,7 @@ mod tests {
 
     /// A failure keeps its content and kind on the first rank.
     #[test]
-    fn failures_are_found_again() {
+    fn failures_survive_the_round_trip() {
         let clock = Clock { steps: 7, time: 0.7, events: 0 };
         let disc = |id| Culprit::in_plane("disc", id, [1.0, 2.0], [3.0, 4.0]);
         let domain = crate::domain::Domain::planar([0.0; 2], [9.0; 2], [true; 2]);
@@ -289,7 +289,7 @@ mod tests {
 
     /// Values of discs that the scene does not have, or not as many as expected, are rejected with the number of the rank.
     #[test]
-    fn numbers_of_discs_are_put_where_they_belong() {
+    fn rank_values_are_stored_by_number() {
         let sent = Parcel::of(&(vec![2_u32, 0], Parcel::of_numbers([1.0, 2.0, 3.0, 4.0])));
         let put = |discs: usize| {
             let mut all = vec![[0.0; 2]; discs];
