@@ -9,13 +9,13 @@ fn main() -> ExitCode {
 }
 
 /// The system allocator, with a message when no memory is left. Without it the program would be aborted.
-struct InWords;
+struct ReportingAllocator;
 
 #[global_allocator]
-static ALLOCATOR: InWords = InWords;
+static ALLOCATOR: ReportingAllocator = ReportingAllocator;
 
 // SAFETY: every block comes from the system allocator; when it fails, no call returns.
-unsafe impl GlobalAlloc for InWords {
+unsafe impl GlobalAlloc for ReportingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as the caller promises.
         limits::given(unsafe { System.alloc(layout) }, layout.size())
@@ -42,7 +42,7 @@ mod limits {
     use std::fmt::{self, Write};
     use std::sync::atomic::{AtomicBool, Ordering};
     use stripmine::console::is_untouched;
-    use stripmine_physics::reported::Class;
+    use stripmine_physics::reported::ErrorClass;
 
     /// Set by `--json`.
     static AS_DATA: AtomicBool = AtomicBool::new(false);
@@ -77,12 +77,12 @@ mod limits {
     }
 
     /// Message on the stack, since there is no other memory.
-    struct Words {
+    struct StackMessage {
         bytes: [u8; 512],
         length: usize,
     }
 
-    impl Write for Words {
+    impl Write for StackMessage {
         fn write_str(&mut self, text: &str) -> fmt::Result {
             let end = self.length + text.len();
             self.bytes.get_mut(self.length..end).ok_or(fmt::Error)?.copy_from_slice(text.as_bytes());
@@ -92,7 +92,7 @@ mod limits {
     }
 
     fn say(to: i32, words: fmt::Arguments<'_>) {
-        let mut said = Words { bytes: [0; 512], length: 0 };
+        let mut said = StackMessage { bytes: [0; 512], length: 0 };
         let _ = said.write_fmt(words);
         // SAFETY: `length` bytes were written there. A failed write cannot be reported anywhere.
         let _ = unsafe { libc::write(to, said.bytes.as_ptr().cast(), said.length) };
@@ -109,7 +109,7 @@ mod limits {
             format_args!("error: out of memory: {bytes} bytes could not be allocated\n  help: {REMEDY}\n"),
         );
         if AS_DATA.load(Ordering::Relaxed) && is_untouched() {
-            let kind = Class::InputOutput.name();
+            let kind = ErrorClass::InputOutput.name();
             say(
                 1,
                 format_args!(
@@ -118,7 +118,7 @@ mod limits {
             );
         }
         // SAFETY: ends the process without exit handlers, which would allocate.
-        unsafe { libc::_exit(Class::InputOutput.exit_code().into()) }
+        unsafe { libc::_exit(ErrorClass::InputOutput.exit_code().into()) }
     }
 }
 

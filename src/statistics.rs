@@ -8,7 +8,7 @@ use stripmine_physics::number::with_bar;
 
 /// Mean and range of a quantity over independent runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
+pub struct RunSpread {
     /// Mean.
     pub mean: f64,
     /// Standard error of the mean; none for a single run.
@@ -21,13 +21,13 @@ pub struct Spread {
     pub runs: usize,
 }
 
-impl Spread {
+impl RunSpread {
     /// Computes the spread of at least one value.
-    pub fn of(values: &[f64]) -> Spread {
+    pub fn of(values: &[f64]) -> RunSpread {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-        Spread {
+        RunSpread {
             mean,
             error: (values.len() > 1).then(|| (squares / (n - 1.0) / n).sqrt()),
             lowest: values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -39,39 +39,40 @@ impl Spread {
 
 /// A mean with half the width of its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Mean {
+pub struct MeanWithBar {
     /// The mean.
     pub value: f64,
     /// Half the width of the interval (the error bar).
     pub bar: f64,
 }
 
-impl fmt::Display for Mean {
+impl fmt::Display for MeanWithBar {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&with_bar(self.value, self.bar))
     }
 }
 
-impl Mean {
+impl MeanWithBar {
     /// Mean of at least one independent value; the error bar of a single one is infinite.
-    pub fn of(values: &[f64]) -> Mean {
-        let Spread { mean, error, runs, .. } = Spread::of(values);
-        Mean { value: mean, bar: error.map_or(f64::INFINITY, |error| student(0.95, runs - 1) * error) }
+    pub fn of(values: &[f64]) -> MeanWithBar {
+        let RunSpread { mean, error, runs, .. } = RunSpread::of(values);
+        MeanWithBar { value: mean, bar: error.map_or(f64::INFINITY, |error| student(0.95, runs - 1) * error) }
     }
 
     /// Mean of a time series of at least one value, which may be correlated.
-    pub(crate) fn of_course(values: &[f64]) -> Mean {
-        of_correlated(values).map_or_else(|| Mean::of(values), |[value, bar]| Mean { value, bar })
+    pub(crate) fn of_course(values: &[f64]) -> MeanWithBar {
+        of_correlated(values)
+            .map_or_else(|| MeanWithBar::of(values), |[value, bar]| MeanWithBar { value, bar })
     }
 
     /// Relative deviation from a known value.
-    pub(crate) fn off(self, known: f64) -> Mean {
-        Mean { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
+    pub(crate) fn off(self, known: f64) -> MeanWithBar {
+        MeanWithBar { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
     }
 
     /// Converts to percent.
-    pub(crate) fn percent(self) -> Mean {
-        Mean { value: 100.0 * self.value, bar: 100.0 * self.bar }
+    pub(crate) fn percent(self) -> MeanWithBar {
+        MeanWithBar { value: 100.0 * self.value, bar: 100.0 * self.bar }
     }
 }
 
@@ -162,7 +163,7 @@ mod tests {
 
     #[test]
     fn deviation_is_relative_to_the_known_value() {
-        assert_eq!(Mean { value: 4.2, bar: 0.4 }.off(4.0).to_string(), "0.05 ± 0.10");
+        assert_eq!(MeanWithBar { value: 4.2, bar: 0.4 }.off(4.0).to_string(), "0.05 ± 0.10");
     }
 
     #[test]
@@ -176,17 +177,17 @@ mod tests {
 
     #[test]
     fn the_error_of_the_mean_needs_two_runs() {
-        assert_eq!(Spread::of(&[3.0]).error, None);
-        let spread = Spread::of(&[1.0, 3.0]);
+        assert_eq!(RunSpread::of(&[3.0]).error, None);
+        let spread = RunSpread::of(&[1.0, 3.0]);
         assert_eq!((spread.mean, spread.error, spread.lowest, spread.highest), (2.0, Some(1.0), 1.0, 3.0));
     }
 
     /// By hand: 1 and 3 have the mean 2 and the standard error 1, of one degree of freedom.
     #[test]
     fn the_bar_of_a_mean_is_students() {
-        let Mean { value, bar } = Mean::of(&[1.0, 3.0]);
+        let MeanWithBar { value, bar } = MeanWithBar::of(&[1.0, 3.0]);
         assert!(value == 2.0 && bar == student(0.95, 1));
-        assert_eq!(Mean::of(&[1.0]).bar, f64::INFINITY);
+        assert_eq!(MeanWithBar::of(&[1.0]).bar, f64::INFINITY);
     }
 
     /// Critical distances of the tables (Stephens 1974): 1.358 and 1.628 for 5 and 1 of 100; and evenly spaced values.

@@ -264,7 +264,7 @@ fn file_size_limit_ends_in_an_exit_code() {
 /// A checkpoint that is intact but has impossible contents ends with exit code 6 and names the file, for every method.
 #[test]
 fn forged_checkpoints_end_with_6() {
-    use stripmine_physics::io::checkpoint::{Checkpoint, Column};
+    use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointColumn};
     let folder = tempfile::tempdir().unwrap();
     for (preset, short, column) in [
         ("two-discs", "run.steps=20", "x1"),
@@ -282,9 +282,9 @@ fn forged_checkpoints_end_with_6() {
             names.iter().position(|name| *name == column).unwrap_or_else(|| panic!("{preset}: {names:?}"));
         let count = whole.columns[at].1.len();
         for forged in [
-            Column::F64(vec![f64::NAN; count]),
-            Column::F64(vec![0.0; count / 2]),
-            Column::U64(vec![0; count]),
+            CheckpointColumn::F64(vec![f64::NAN; count]),
+            CheckpointColumn::F64(vec![0.0; count / 2]),
+            CheckpointColumn::U64(vec![0; count]),
         ] {
             let mut checkpoint = whole.clone();
             checkpoint.columns[at].1 = forged;

@@ -6,16 +6,17 @@ mod support;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::sweep::lattice::LatticeShape;
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::io::checkpoint::Column;
+use stripmine_physics::io::checkpoint::CheckpointColumn;
 use stripmine_physics::method::SteppedState;
-use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::Grains;
+use stripmine_physics::method::lattice_md::GranularDocument;
+use stripmine_physics::method::lattice_md::SteppedGrains;
 use stripmine_physics::method::lattice_md::{
-    Contacts, FastSearch, GearValues, Machine, Model, OnConflict, Scheme, Watch,
+    ContactSearch, ContactWatch, FastSearch, GearValues, GranularModel, GranularScheme, OnConflict,
+    ProgramExecution,
 };
-use stripmine_physics::method::{Failure, FailureKind};
-use stripmine_physics::observe::{Observation, Scenery};
-use stripmine_physics::particles::{Kind, Particles};
+use stripmine_physics::method::{FailureKind, PhysicsFailure};
+use stripmine_physics::observe::{Observation, SceneProperties};
+use stripmine_physics::particles::{ParticleKind, Particles};
 use stripmine_physics::scene::{Precision, WallMotion};
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
@@ -24,25 +25,25 @@ const LATTICE: FastSearch = FastSearch::Lattice(OnConflict::Stop);
 /// All contact searches of the fast engine.
 const SEARCHES: [FastSearch; 3] = [LATTICE, FastSearch::Sectors, FastSearch::Lists { skin: 0.15 }];
 
-const SCHEMES: [Scheme; 4] = [
-    Scheme::VelocityVerlet,
-    Scheme::Gear(GearValues::Four),
-    Scheme::Gear(GearValues::Five),
-    Scheme::Gear(GearValues::Six),
+const SCHEMES: [GranularScheme; 4] = [
+    GranularScheme::VelocityVerlet,
+    GranularScheme::Gear(GearValues::Four),
+    GranularScheme::Gear(GearValues::Five),
+    GranularScheme::Gear(GearValues::Six),
 ];
 
-fn bits(method: &Grains) -> Vec<(String, Vec<u64>)> {
-    let bits = |column: Column| match column {
-        Column::F64(values) => values.into_iter().map(f64::to_bits).collect(),
-        Column::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
-        Column::U32(values) => values.into_iter().map(u64::from).collect(),
-        Column::U64(values) => values,
+fn bits(method: &SteppedGrains) -> Vec<(String, Vec<u64>)> {
+    let bits = |column: CheckpointColumn| match column {
+        CheckpointColumn::F64(values) => values.into_iter().map(f64::to_bits).collect(),
+        CheckpointColumn::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+        CheckpointColumn::U32(values) => values.into_iter().map(u64::from).collect(),
+        CheckpointColumn::U64(values) => values,
     };
     method.columns().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }
 
 /// Largest differences of positions (length), with the nearest image, and of velocities.
-fn differences(model: &Model, a: &Particles, b: &Particles) -> [f64; 2] {
+fn differences(model: &GranularModel, a: &Particles, b: &Particles) -> [f64; 2] {
     let mut largest = [0.0_f64; 2];
     for (a, b) in a.all().iter().zip(b.all()) {
         assert_eq!(a.id, b.id);
@@ -63,12 +64,12 @@ fn fast_engine_agrees_with_programs_except_for_rounding() {
             for (precision, bound) in
                 [(Precision::F64, 1e-10), (Precision::Mixed, 1e-3), (Precision::F32, 1e-3)]
             {
-                let mut faithful = simulate(precision, &start, Contacts::Lattice, fast());
+                let mut faithful = simulate(precision, &start, ContactSearch::Lattice, fast());
                 advance(&mut faithful, 300);
                 let moved = differences(&start.0, &start.1, &faithful.particles());
                 assert!(moved[0] > 0.1, "the discs must have moved: {moved:?}");
                 for search in SEARCHES {
-                    let mut other = simulate(precision, &start, Contacts::Fast(search), fast());
+                    let mut other = simulate(precision, &start, ContactSearch::Fast(search), fast());
                     advance(&mut other, 300);
                     let off = differences(&start.0, &faithful.particles(), &other.particles());
                     let close = off[0] < bound && off[1] < 10.0 * bound;
@@ -85,7 +86,7 @@ fn walls_gravity_and_floor_agree_with_programs() {
     for column in 0..8u32 {
         let x = 0.5 + f64::from(column);
         let mut wall = grain(100 + column, [x, 1.0], [0.0; 2], 0.5, 1.0);
-        wall.kind = Kind::Wall;
+        wall.kind = ParticleKind::Wall;
         discs.push(wall);
         discs.push(grain(column, [x, 2.2 + 0.01 * f64::from(column)], [0.1, -0.2], 0.47, 0.9));
     }
@@ -96,14 +97,14 @@ fn walls_gravity_and_floor_agree_with_programs() {
         model.scheme = scheme;
         let run = |contacts| {
             let (model, particles) = (model.clone(), particles.clone());
-            let start = Grains::start;
+            let start = SteppedGrains::start;
             let mut method = start(Precision::F64, model, contacts, fast(), walls, particles).unwrap();
             advance(&mut method, 400);
             (method.particles(), method.totals())
         };
-        let (faithful, deep) = run(Contacts::Lattice);
+        let (faithful, deep) = run(ContactSearch::Lattice);
         for search in SEARCHES {
-            let (other, also_deep) = run(Contacts::Fast(search));
+            let (other, also_deep) = run(ContactSearch::Fast(search));
             let off = differences(&model, &faithful, &other);
             assert!(off[0] < 1e-10 && off[1] < 1e-9, "{search:?} {scheme:?}: {off:?}");
             assert_eq!(deep.deep_disc_steps, also_deep.deep_disc_steps);
@@ -116,7 +117,7 @@ fn walls_gravity_and_floor_agree_with_programs() {
 #[test]
 fn lists_and_order_do_not_depend_on_threads() {
     let mut start = gas(40_000, 0.3, 5);
-    (start.0.scheme, start.0.dt) = (Scheme::VelocityVerlet, 0.02);
+    (start.0.scheme, start.0.dt) = (GranularScheme::VelocityVerlet, 0.02);
     for (search, precision) in [
         (FastSearch::Sectors, Precision::F64),
         (FastSearch::Lists { skin: 0.02 }, Precision::F64),
@@ -125,7 +126,7 @@ fn lists_and_order_do_not_depend_on_threads() {
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let mut gas = simulate(precision, &start, Contacts::Fast(search), fast());
+                let mut gas = simulate(precision, &start, ContactSearch::Fast(search), fast());
                 advance(&mut gas, 5);
                 assert!(gas.lists().is_none_or(|(_, made)| made > 1), "lists must be rebuilt");
                 (bits(&gas), gas.lists())
@@ -152,12 +153,12 @@ fn threads_instructions_and_resumption_give_the_same_bits() {
         (lists, 0.1, Precision::F64),
     ] {
         let mut start = gas(8200, packing_fraction, 3);
-        start.0.scheme = Scheme::VelocityVerlet;
+        start.0.scheme = GranularScheme::VelocityVerlet;
         let run = |threads: usize, set: InstructionSet| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let machine = Machine { execution: Execution::Chained, set };
-                let mut gas = simulate(precision, &start, Contacts::Fast(search), machine);
+                let machine = ProgramExecution { execution: Execution::Chained, set };
+                let mut gas = simulate(precision, &start, ContactSearch::Fast(search), machine);
                 advance(&mut gas, STEPS);
                 bits(&gas)
             })
@@ -168,9 +169,9 @@ fn threads_instructions_and_resumption_give_the_same_bits() {
                 assert!(run(threads, set) == scalar, "{search:?} {} on {threads} threads", set.name());
             }
         }
-        let mut first = simulate(precision, &start, Contacts::Fast(search), fast());
+        let mut first = simulate(precision, &start, ContactSearch::Fast(search), fast());
         advance(&mut first, 37);
-        let mut second = simulate(precision, &start, Contacts::Fast(search), fast());
+        let mut second = simulate(precision, &start, ContactSearch::Fast(search), fast());
         second.restore(37, first.totals(), &first.columns()).unwrap();
         assert!(second.particles() == first.particles());
         advance(&mut second, STEPS - 37);
@@ -181,7 +182,9 @@ fn threads_instructions_and_resumption_give_the_same_bits() {
 /// Cells so wide that many hold two discs and some three: the discs that the lattice has no cell for feel the same forces.
 #[test]
 fn discs_sharing_a_cell_feel_the_same_forces() {
-    for (scheme, edge) in [(Scheme::VelocityVerlet, 1.0), (Scheme::Gear(GearValues::Five), 1.2)] {
+    for (scheme, edge) in
+        [(GranularScheme::VelocityVerlet, 1.0), (GranularScheme::Gear(GearValues::Five), 1.2)]
+    {
         let mut start = gas(400, 0.8, 9);
         let sides = start.0.domain().lengths();
         let counts = sides.map(|side| (side / edge) as usize);
@@ -189,8 +192,8 @@ fn discs_sharing_a_cell_feel_the_same_forces() {
         start.0.frame.edge = [0, 1].map(|axis| sides[axis] / counts[axis] as f64);
         start.0.scheme = scheme;
         let run = |search: FastSearch, set: InstructionSet| {
-            let machine = Machine { execution: Execution::Chained, set };
-            let mut gas = simulate(Precision::F64, &start, Contacts::Fast(search), machine);
+            let machine = ProgramExecution { execution: Execution::Chained, set };
+            let mut gas = simulate(Precision::F64, &start, ContactSearch::Fast(search), machine);
             advance(&mut gas, 300);
             gas
         };
@@ -205,24 +208,24 @@ fn discs_sharing_a_cell_feel_the_same_forces() {
         assert!(bits(&scalar) == bits(&resolved));
         assert_eq!(scalar.totals(), resolved.totals());
         // The choice of the disc that keeps a shared cell depends on the state only, not on its history.
-        let mut first = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
+        let mut first = simulate(Precision::F64, &start, ContactSearch::Fast(resolve), fast());
         advance(&mut first, 111);
-        let mut second = simulate(Precision::F64, &start, Contacts::Fast(resolve), fast());
+        let mut second = simulate(Precision::F64, &start, ContactSearch::Fast(resolve), fast());
         second.restore(111, first.totals(), &first.columns()).unwrap();
         advance(&mut second, 189);
         assert!(bits(&second) == bits(&resolved), "a resumed run differs");
         assert_eq!(second.totals(), resolved.totals());
-        let begin = Grains::start;
+        let begin = SteppedGrains::start;
         let (model, particles) = start.clone();
         let stopped =
-            begin(Precision::F64, model, Contacts::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
+            begin(Precision::F64, model, ContactSearch::Fast(LATTICE), fast(), WallMotion::Fixed, particles);
         let stopped = stopped.err().expect("two discs in one cell");
         assert_eq!((stopped.kind, stopped.at.map(|clock| clock.steps)), (FailureKind::CONFLICT, Some(0)));
     }
 }
 
 /// Forces of all pairs of elastic discs, from the textbook formula.
-fn naive_forces(model: &Model, discs: &Particles) -> Vec<[f64; 2]> {
+fn naive_forces(model: &GranularModel, discs: &Particles) -> Vec<[f64; 2]> {
     let mut forces = vec![[0.0; 2]; discs.len()];
     for (i, a) in discs.all().iter().enumerate() {
         for (j, b) in discs.all().iter().enumerate().skip(i + 1) {
@@ -245,7 +248,7 @@ fn wide_size_ratios_work_with_sectors_and_lists() {
     const STEPS: u64 = 1000;
     let load = |overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        Document::load("wide-sizes", &overrides).and_then(Document::check)
+        GranularDocument::load("wide-sizes", &overrides).and_then(GranularDocument::check)
     };
     let few = ["domain.sides=[20, 18]", "particles.packing_fraction=0.3"];
     let checked = load(&few).unwrap_or_else(|errors| panic!("{errors}"));
@@ -283,9 +286,11 @@ fn wide_size_ratios_work_with_sectors_and_lists() {
 #[test]
 fn momentum_is_conserved_to_rounding() {
     let mut start = gas(400, 0.84, 5);
-    start.0.scheme = Scheme::VelocityVerlet;
-    let mut gas = simulate(Precision::F64, &start, Contacts::Fast(LATTICE), fast());
-    let observe = |gas: &Grains| Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0));
+    start.0.scheme = GranularScheme::VelocityVerlet;
+    let mut gas = simulate(Precision::F64, &start, ContactSearch::Fast(LATTICE), fast());
+    let observe = |gas: &SteppedGrains| {
+        Observation::of(gas.steps(), 0.0, &gas.particles(), &SceneProperties::of(&start.0))
+    };
     let first = observe(&gas);
     advance(&mut gas, 2000);
     let seen = observe(&gas);
@@ -297,13 +302,13 @@ fn momentum_is_conserved_to_rounding() {
 /// Without damping, velocity Verlet in the fast engine conserves energy as well as Gear's scheme in the programs.
 #[test]
 fn energy_is_conserved_over_ten_thousand_steps() {
-    let drift = |scheme: Scheme, contacts: Contacts| {
+    let drift = |scheme: GranularScheme, contacts: ContactSearch| {
         let mut start = gas(400, 0.84, 11);
         start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
         (start.0.friction, start.0.scheme) = (false, scheme);
         let mut gas = simulate(Precision::F64, &start, contacts, fast());
-        let energy = |gas: &Grains| {
-            Observation::of(gas.steps(), 0.0, &gas.particles(), &Scenery::of(&start.0)).energy()
+        let energy = |gas: &SteppedGrains| {
+            Observation::of(gas.steps(), 0.0, &gas.particles(), &SceneProperties::of(&start.0)).energy()
         };
         let first = energy(&gas);
         (0..10)
@@ -313,8 +318,8 @@ fn energy_is_conserved_over_ten_thousand_steps() {
             })
             .fold(0.0, f64::max)
     };
-    let verlet = drift(Scheme::VelocityVerlet, Contacts::Fast(LATTICE));
-    let gear = drift(Scheme::Gear(GearValues::Five), Contacts::Lattice);
+    let verlet = drift(GranularScheme::VelocityVerlet, ContactSearch::Fast(LATTICE));
+    let gear = drift(GranularScheme::Gear(GearValues::Five), ContactSearch::Lattice);
     println!("largest error of the energy: velocity Verlet {verlet:.1e}, Gear {gear:.1e}");
     assert!(verlet < 1e-4, "{verlet:e}");
     assert!(gear < 1e-3, "{gear:e}");
@@ -338,7 +343,7 @@ fn failures_are_found_in_their_step() {
     let with = |stop: f64| {
         let mut start = arena([16, 16], false, &closing);
         start.0.contact.stiffness = 1e-6;
-        start.0.watch = Some(Watch::new(0.1, stop, 0.5));
+        start.0.watch = Some(ContactWatch::new(0.1, stop, 0.5));
         start
     };
     let cases = [arena([16, 16], false, &lost), with(0.4), nan, with(0.99)];
@@ -348,11 +353,11 @@ fn failures_are_found_in_their_step() {
         cases.iter().take(apply).cloned().map(move |start| (search, start))
     });
     for (search, mut start) in runs {
-        start.0.scheme = Scheme::Gear(GearValues::Five);
-        let failure = |contacts| -> Failure {
+        start.0.scheme = GranularScheme::Gear(GearValues::Five);
+        let failure = |contacts| -> PhysicsFailure {
             let start = start.clone();
             let (model, particles) = start;
-            let begin = Grains::start;
+            let begin = SteppedGrains::start;
             let mut method =
                 match begin(Precision::F64, model, contacts, fast(), WallMotion::Fixed, particles) {
                     Ok(method) => method,
@@ -360,7 +365,7 @@ fn failures_are_found_in_their_step() {
                 };
             (0..200).find_map(|_| method.step().err()).expect("something breaks")
         };
-        let (faithful, other) = (failure(Contacts::Lattice), failure(Contacts::Fast(search)));
+        let (faithful, other) = (failure(ContactSearch::Lattice), failure(ContactSearch::Fast(search)));
         assert_eq!(faithful.kind, other.kind, "{faithful}\nbut {other}");
         let value = |name: &str| [&faithful, &other].map(|failure| failure.value(name).unwrap());
         match faithful.kind {

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 
 /// Small scenes of every method with its own kind of state.
 const SCENES: [&[&str]; 4] = [
@@ -34,7 +34,7 @@ struct Random(Stream);
 
 impl Random {
     fn new(of: u32) -> Random {
-        Random(Stream::new(from_environment("STRIPMINE_SEED", 1), Purpose::Test, of))
+        Random(Stream::new(from_environment("STRIPMINE_SEED", 1), RandomPurpose::Test, of))
     }
 
     fn below(&mut self, limit: usize) -> usize {

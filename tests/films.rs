@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use stripmine_physics::io::extxyz::{Frame, Frames};
-use stripmine_physics::particles::Kind;
+use stripmine_physics::io::extxyz::{ParticleFrame, XyzFrames};
+use stripmine_physics::particles::ParticleKind;
 
 fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
@@ -45,8 +45,8 @@ fn column(column: &Value) -> (Vec<f64>, f64) {
     (numbers, 0.50001 * (high - low) / highest + 1e-12 * high.abs().max(low.abs()))
 }
 
-fn trajectory(folder: &Path, preset: &str) -> Vec<Frame> {
-    let frames = Frames::open(folder.join(format!("{preset}.run/trajectory.xyz"))).unwrap().in_space();
+fn trajectory(folder: &Path, preset: &str) -> Vec<ParticleFrame> {
+    let frames = XyzFrames::open(folder.join(format!("{preset}.run/trajectory.xyz"))).unwrap().in_space();
     frames.map(Result::unwrap).collect()
 }
 
@@ -80,7 +80,7 @@ fn is_as_written(folder: &Path, preset: &str, most_beyond: f64) {
         }
     }
     assert!(f64::from(beyond) <= most_beyond * xs.len() as f64, "{preset}: {beyond} of {}", xs.len());
-    let walls = frames[0].particles.all().iter().filter(|it| it.kind == Kind::Wall).count();
+    let walls = frames[0].particles.all().iter().filter(|it| it.kind == ParticleKind::Wall).count();
     assert_eq!(column(&film["fixed"]["radii"]).0.len(), walls, "{preset}");
     // Rounded to 16 bits of the shown range.
     let [[left, _], [right, _]]: [[f64; 2]; 2] = serde_json::from_value(film["window"].clone()).unwrap();

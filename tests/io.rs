@@ -17,14 +17,14 @@ mod lammps;
 #[path = "io/others.rs"]
 mod others;
 
-use stripmine_physics::io::extxyz::{Frame, write};
-use stripmine_physics::particles::{Kind, Particle, Particles};
+use stripmine_physics::io::extxyz::{ParticleFrame, write};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles};
 
 /// A grain and a wall disc with numbers that are hard to print.
-fn frame(step: u64) -> Frame {
+fn frame(step: u64) -> ParticleFrame {
     let grain = Particle {
         id: 7,
-        kind: Kind::Grain,
+        kind: ParticleKind::Grain,
         position: [0.1 + 0.2, -0.0, 0.0],
         velocity: [5e-324, -f64::MAX, 0.0],
         angle: 0.0,
@@ -32,8 +32,9 @@ fn frame(step: u64) -> Frame {
         radius: 0.5,
         mass: 1e-7,
     };
-    let wall = Particle { id: u32::MAX, kind: Kind::Wall, position: [1e300, 2.0, 0.0], mass: 1e16, ..grain };
-    Frame {
+    let wall =
+        Particle { id: u32::MAX, kind: ParticleKind::Wall, position: [1e300, 2.0, 0.0], mass: 1e16, ..grain };
+    ParticleFrame {
         particles: Particles::new(vec![grain, wall]),
         cell: [10.0 / 3.0, 8.0],
         origin: [-1.5, 0.1],
@@ -45,7 +46,7 @@ fn frame(step: u64) -> Frame {
     }
 }
 
-fn text(frame: &Frame) -> String {
+fn text(frame: &ParticleFrame) -> String {
     let mut bytes = Vec::new();
     write(frame, &mut bytes).unwrap();
     String::from_utf8(bytes).unwrap()

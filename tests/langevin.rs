@@ -332,12 +332,12 @@ fn losses_are_counted_and_listed() {
         let absent = last.chunks(4).filter(|x| f32::from_le_bytes((*x).try_into().unwrap()).is_nan());
         assert_eq!(absent.count() as u64, lost);
         // A GSD frame has the remaining particles, as the text does, but no seed.
-        let text: Vec<_> = extxyz::Frames::open(out.join("trajectory.xyz"))
+        let text: Vec<_> = extxyz::XyzFrames::open(out.join("trajectory.xyz"))
             .unwrap()
-            .map(|frame| extxyz::Frame { seed: None, ..frame.unwrap() })
+            .map(|frame| extxyz::ParticleFrame { seed: None, ..frame.unwrap() })
             .collect();
         let indexed: Vec<_> =
-            gsd::Frames::open(out.join("trajectory.gsd")).unwrap().map(Result::unwrap).collect();
+            gsd::GsdFrames::open(out.join("trajectory.gsd")).unwrap().map(Result::unwrap).collect();
         assert!(text == indexed && text[text.len() - 1].particles.len() as u64 == 4000 - lost);
         (rows, last_frame(&out), dcd, fs::read(out.join("trajectory.gsd")).unwrap(), counted)
     };

@@ -7,7 +7,7 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::SteppedState;
 use stripmine_physics::method::lattice_md::{
-    Contacts, Grains, ListOptions, Machine, Model, ProgramText, Rebuild,
+    ContactSearch, GranularModel, ListOptions, ProgramExecution, ProgramVersion, Rebuild, SteppedGrains,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::Precision;
@@ -19,9 +19,10 @@ fn trajectories_agree(precision: Precision, coordinates: Coordinates, rebuild: R
     agree(precision, &start, rebuild, steps);
 }
 
-fn agree(precision: Precision, start: &(Model, Particles), rebuild: Rebuild, steps: u64) {
-    let mut lattice = simulate(precision, start, Contacts::Lattice, fast());
-    let mut list = simulate(precision, start, Contacts::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
+fn agree(precision: Precision, start: &(GranularModel, Particles), rebuild: Rebuild, steps: u64) {
+    let mut lattice = simulate(precision, start, ContactSearch::Lattice, fast());
+    let mut list =
+        simulate(precision, start, ContactSearch::Lists(ListOptions { rebuild, skin: 0.2 }), fast());
     for _ in 0..10 {
         advance(&mut lattice, steps / 10);
         advance(&mut list, steps / 10);
@@ -61,12 +62,13 @@ fn bits_agree_with_the_printed_program() {
 fn printed_program_agrees_for_every_execution() {
     const STEPS: u64 = 200;
     let start = printed_gas(200, 0.84, 3);
-    let after = |start: &(Model, Particles), execution, set| {
-        let mut engine = simulate(Precision::F64, start, Contacts::Lattice, Machine { execution, set });
+    let after = |start: &(GranularModel, Particles), execution, set| {
+        let mut engine =
+            simulate(Precision::F64, start, ContactSearch::Lattice, ProgramExecution { execution, set });
         advance(&mut engine, STEPS);
         engine
     };
-    let state = |engine: &Grains| engine.columns();
+    let state = |engine: &SteppedGrains| engine.columns();
     let printed = after(&start, Execution::Chained, InstructionSet::Scalar);
     for set in InstructionSet::available() {
         for execution in [Execution::Eager, Execution::Strip(64), Execution::Strip(7), Execution::Chained] {
@@ -74,7 +76,7 @@ fn printed_program_agrees_for_every_execution() {
             assert!(same, "{execution:?} on {set:?} differs");
         }
     }
-    let ours = Model { text: ProgramText::Ours, ..start.0.clone() };
+    let ours = GranularModel { text: ProgramVersion::Ours, ..start.0.clone() };
     let ours = after(&(ours, start.1.clone()), Execution::Chained, InstructionSet::best());
     let (printed, ours) = (printed.particles(), ours.particles());
     let mut moved = 0.0_f64;
@@ -92,10 +94,11 @@ fn printed_program_agrees_for_every_execution() {
 /// The small pipe with both programs: fixed and moving walls, a closed side, gravity.
 #[test]
 fn printed_program_gives_our_pipe_within_rounding() {
-    use stripmine_physics::method::lattice_md::{Document, assemble};
+    use stripmine_physics::method::lattice_md::{GranularDocument, assemble};
     let run = |preset: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        let mut engine = assemble(&Document::load(preset, &overrides).unwrap().check().unwrap()).unwrap();
+        let mut engine =
+            assemble(&GranularDocument::load(preset, &overrides).unwrap().check().unwrap()).unwrap();
         advance(&mut engine, 300);
         engine.particles()
     };

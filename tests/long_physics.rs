@@ -7,10 +7,10 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::SQRT_2;
 use std::fmt::Write;
 use std::sync::LazyLock;
-use stripmine::statistics::Spread;
-use stripmine_physics::method::lattice_md::Document;
+use stripmine::statistics::RunSpread;
+use stripmine_physics::method::lattice_md::GranularDocument;
 use stripmine_physics::method::lattice_md::{assemble, model};
-use stripmine_physics::observe::{Observation, Scenery, contacts, waves};
+use stripmine_physics::observe::{Observation, SceneProperties, contacts, waves};
 use stripmine_physics::particles::Particles;
 
 /// Enough seeds for the largest penetration, an extreme whose scatter few seeds underestimate: seeds 1 to 6 have 0.0561 ± 0.0006, seeds 1 to 24
@@ -59,11 +59,11 @@ fn along(particles: &Particles) -> Vec<f64> {
 fn run(seed: u64, time: f64, overrides: &[&str]) -> Pipe {
     let mut all = vec![format!("particles.seed={seed}")];
     all.extend(overrides.iter().map(|&text| text.to_owned()));
-    let mut checked = Document::load("pipe-small", &all).unwrap().check().unwrap();
+    let mut checked = GranularDocument::load("pipe-small", &all).unwrap().check().unwrap();
     // Set only after the check, so that the lattice of the scene stays: contacts deeper than this are recorded.
     checked.scene.law.max_penetration = 0.01;
     let mut method = assemble(&checked).unwrap();
-    let scenery = Scenery::of(&model(&checked));
+    let scenery = SceneProperties::of(&model(&checked));
     let length = checked.domain.length(0);
     let dt = checked.scene.integrator.dt;
     let steps = (time / dt).round() as u64;
@@ -131,8 +131,8 @@ struct Over {
 
 impl Over {
     fn seeds(pipes: &[Pipe], figure: impl Fn(&Pipe) -> f64) -> Over {
-        let Spread { mean, error, lowest, highest, .. } =
-            Spread::of(&pipes.iter().map(figure).collect::<Vec<_>>());
+        let RunSpread { mean, error, lowest, highest, .. } =
+            RunSpread::of(&pipes.iter().map(figure).collect::<Vec<_>>());
         Over { mean, error: error.expect("several seeds"), range: [lowest, highest] }
     }
 

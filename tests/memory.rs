@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 use stripmine_physics::method::{METHODS, load};
-use stripmine_physics::ranks::Crew;
+use stripmine_physics::ranks::RankBackend;
 
 /// Peak memory (bytes) of a process that ends successfully. A small process starts it and measures: a child of a
 /// large process would be reported with at least the memory of its parent.
@@ -128,7 +128,7 @@ fn ranks_take_the_estimated_memory() {
                 .map(str::to_owned);
         let needed = {
             let (prepared, _) = load("bench", &sets, METHODS).unwrap();
-            prepared.memory.on(Crew::Threads(ranks)).needed as f64
+            prepared.memory.on(RankBackend::Threads(ranks)).needed as f64
         };
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("run").display().to_string();

@@ -5,8 +5,8 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use stripmine::claims::{self, Verdict};
-use stripmine::frame::{Expressions, Rows, Scope};
+use stripmine::claims::{self, ClaimVerdict};
+use stripmine::frame::{ExpressionScope, Expressions, FrameBuilder};
 use stripmine::report::tally::Tally;
 use stripmine::results::Folder;
 
@@ -43,18 +43,18 @@ fn definitions(text: &str) -> BTreeMap<&str, (&str, &str)> {
 }
 
 /// Claims by source and verdict, as the report's first table has them.
-fn claims_of(folder: &Folder) -> Scope {
+fn claims_of(folder: &Folder) -> ExpressionScope {
     let items = [root().join("reports"), root().join("reports/host")]
         .into_iter()
         .flat_map(|it| fs::read_dir(it).unwrap());
     let names = items.map(|it| it.unwrap().file_name().into_string().unwrap());
     let sections: Vec<_> = names.filter_map(|name| folder.section(&name).unwrap()).collect();
     let tally = Tally::of(&sections, &claims::all().unwrap());
-    let mut rows = Rows::of(tally.rows()).text("source", |(source, _)| *source);
-    for (at, verdict) in Verdict::ALL.into_iter().enumerate() {
+    let mut rows = FrameBuilder::of(tally.rows()).text("source", |(source, _)| *source);
+    for (at, verdict) in ClaimVerdict::ALL.into_iter().enumerate() {
         rows = rows.count(verdict.words(), move |(_, counts)| counts[at]);
     }
-    Scope::of([rows.frame("sources", "Claims by source and verdict")])
+    ExpressionScope::of([rows.frame("sources", "Claims by source and verdict")])
 }
 
 /// Checks the numbers of a text. Returns the text with the numbers of the report, how many there are, and faults with their lines:

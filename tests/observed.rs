@@ -6,12 +6,12 @@ use std::sync::atomic::AtomicBool;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::law::spring::Spring;
-use stripmine_kernels::noise::{Purpose as Draw, Stream};
+use stripmine_kernels::noise::{RandomPurpose as Draw, Stream};
 use stripmine_physics::domain::Domain;
-use stripmine_physics::method::lattice_md::{Document, model};
-use stripmine_physics::method::{METHODS, Purpose, Simulation, Until, load};
-use stripmine_physics::observe::{Observation, Scenery};
-use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+use stripmine_physics::method::lattice_md::{GranularDocument, model};
+use stripmine_physics::method::{METHODS, Simulation, StartPurpose, Until, load};
+use stripmine_physics::observe::{Observation, SceneProperties};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles, in_space};
 
 /// Overrides of a scene.
 type Sets<'a> = &'a [&'a str];
@@ -21,16 +21,16 @@ fn owned(sets: &[Sets<'_>]) -> Vec<String> {
 }
 
 fn begin(scene: &str, sets: &[Sets<'_>]) -> Box<dyn Simulation> {
-    let prepared = Document::load(scene, &owned(sets)).unwrap().prepare().unwrap();
-    prepared.start(Purpose::Run).unwrap()
+    let prepared = GranularDocument::load(scene, &owned(sets)).unwrap().prepare().unwrap();
+    prepared.start(StartPurpose::Run).unwrap()
 }
 
 fn advance(simulation: &mut dyn Simulation, steps: u64) {
     simulation.advance(&[Until::Steps(steps)], &AtomicBool::new(false)).unwrap();
 }
 
-fn scenery(scene: &str, sets: &[Sets<'_>]) -> Scenery {
-    Scenery::of(&model(&Document::load(scene, &owned(sets)).unwrap().check().unwrap()))
+fn scenery(scene: &str, sets: &[Sets<'_>]) -> SceneProperties {
+    SceneProperties::of(&model(&GranularDocument::load(scene, &owned(sets)).unwrap().check().unwrap()))
 }
 
 /// Index of a quantity in a row.
@@ -176,7 +176,7 @@ fn list_counters_continue_in_other_methods() {
     let sets = owned(&[&["search.by=neighbor-list", "run.steps=200"]]);
     let begin = || {
         let (prepared, _) = load("langevin-dense", &sets, METHODS).unwrap();
-        prepared.start(Purpose::Run).unwrap()
+        prepared.start(StartPurpose::Run).unwrap()
     };
     let mut whole = begin();
     advance(whole.as_mut(), 100);
@@ -258,7 +258,7 @@ fn pressure_agrees_with_the_formula() {
         };
         let discs = (0..60).map(|id| Particle {
             id,
-            kind: if id % 7 == 0 { Kind::Wall } else { Kind::Grain },
+            kind: if id % 7 == 0 { ParticleKind::Wall } else { ParticleKind::Grain },
             position: in_space([2.5 + spread(7.0), 6.5 + spread(9.0)]),
             velocity: in_space([spread(4.0), spread(4.0)]),
             angle: 0.0,
@@ -267,7 +267,7 @@ fn pressure_agrees_with_the_formula() {
             mass: 1.0 + spread(1.0),
         });
         let particles = Particles::new(discs.collect());
-        let scenery = Scenery { domain, contact, gravity: [0.0; 2], inertia_factor: 0.5 };
+        let scenery = SceneProperties { domain, contact, gravity: [0.0; 2], inertia_factor: 0.5 };
         let seen = Observation::of(0, 0.0, &particles, &scenery);
         let grains = particles.grains();
         let (mut virial, mut undamped) = (0.0, 0.0);
@@ -306,7 +306,7 @@ fn pressure_agrees_with_the_formula() {
 fn temperatures_count_the_degrees_of_freedom() {
     let disc = |id, position, velocity, mass| Particle {
         id,
-        kind: Kind::Grain,
+        kind: ParticleKind::Grain,
         position: in_space(position),
         velocity: in_space(velocity),
         angle: 0.0,
@@ -326,7 +326,7 @@ fn temperatures_count_the_degrees_of_freedom() {
     };
     let seen = |discs: &[Particle], periodic| {
         let domain = Domain::planar([0.0; 2], [10.0, 9.0], periodic);
-        let scenery = Scenery { domain, contact, gravity: [0.0; 2], inertia_factor: 0.5 };
+        let scenery = SceneProperties { domain, contact, gravity: [0.0; 2], inertia_factor: 0.5 };
         let seen = Observation::of(0, 0.0, &Particles::new(discs.to_vec()), &scenery);
         [seen.temperature, seen.pressure * 90.0]
     };

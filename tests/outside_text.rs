@@ -168,13 +168,13 @@ fn standard_output_has_no_control_characters() {
 /// Checkpoints and folders with control characters in their names.
 #[test]
 fn checkpoint_messages_have_no_control_characters() {
-    use stripmine_physics::io::checkpoint::{CheckpointError, Fault, Kept};
+    use stripmine_physics::io::checkpoint::{CheckpointError, CheckpointFault, OlderCheckpoint};
     for nasty in NASTY {
         let error = CheckpointError {
             file: nasty.into(),
             offset: None,
-            fault: Fault::Repeated { what: "the column", name: nasty.to_owned() },
-            kept: Kept::Whole { file: nasty.into(), step: 1 },
+            fault: CheckpointFault::Repeated { what: "the column", name: nasty.to_owned() },
+            kept: OlderCheckpoint::Whole { file: nasty.into(), step: 1 },
         };
         assert!(is_clean(&error.to_string()), "{error:?}");
     }
@@ -291,8 +291,8 @@ fn no_verb_blocks_on_a_pipe() {
 /// Files of other types and broken ones may hold any number of mistakes: the first are named, the rest counted.
 #[test]
 fn many_mistakes_are_counted() {
-    use stripmine_physics::method::lattice_md::Scene;
-    use stripmine_physics::scene::Reason;
+    use stripmine_physics::method::lattice_md::GranularScene;
+    use stripmine_physics::scene::MistakeKind;
     let keys: String = (0..100_000).map(|i| format!("key{i} = 1\n")).collect();
     let positions = format!("[particles]\npositions = [{}]", "[1.0, 2.0, 3.0], ".repeat(40_000));
     for (text, more) in [
@@ -302,10 +302,13 @@ fn many_mistakes_are_counted() {
         (format!("format = 2\n{positions}"), None),
         (format!("format = 2\n[law]\n{} = 1", "k".repeat(1_000_000)), None),
     ] {
-        let errors = Scene::parse("scene.toml", &text).unwrap_err();
+        let errors = GranularScene::parse("scene.toml", &text).unwrap_err();
         assert!(errors.0.len() <= 60, "{}", errors.0.len());
-        let said =
-            errors.0.iter().find(|error| error.reason == Reason::More).map(|error| error.message.clone());
+        let said = errors
+            .0
+            .iter()
+            .find(|error| error.reason == MistakeKind::More)
+            .map(|error| error.message.clone());
         assert_eq!(said.is_some(), more.is_some(), "{said:?}");
         assert!(said.is_none_or(|said| said.ends_with(more.unwrap())));
         assert!(errors.to_string().len() < 200_000);
@@ -315,8 +318,8 @@ fn many_mistakes_are_counted() {
 /// The column of an item is found without counting from the start of its line.
 #[test]
 fn long_lines_are_read_in_linear_time() {
-    use stripmine_physics::method::lattice_md::Document;
-    let text = Document::load("two-discs", &[]).unwrap().scene.to_toml();
+    use stripmine_physics::method::lattice_md::GranularDocument;
+    let text = GranularDocument::load("two-discs", &[]).unwrap().scene.to_toml();
     let list =
         |count: usize| (0..count).map(|i| format!("[{}.0, 1.0]", i % 9)).collect::<Vec<_>>().join(", ");
     let at = text.find("positions = ").unwrap();
@@ -324,7 +327,7 @@ fn long_lines_are_read_in_linear_time() {
     let velocities = text.find("velocities = ").map(|at| (at, at + text[at..].find('\n').unwrap()));
     let long = format!("{}positions = [{}, [\"é\", 0.0]]{}", &text[..at], list(40_000), &text[end..]);
     assert!(velocities.is_some());
-    let errors = Document::parse("scene.toml", &long, &[]).unwrap_err();
+    let errors = GranularDocument::parse("scene.toml", &long, &[]).unwrap_err();
     let place = errors.0[0].place.unwrap();
     let column = long.lines().nth(place.line as usize - 1).unwrap().find('"').unwrap() + 1;
     assert_eq!(place.column as usize, column, "{errors}");

@@ -6,22 +6,24 @@ mod support;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::io::checkpoint::Column;
+use stripmine_physics::io::checkpoint::CheckpointColumn;
 use stripmine_physics::method::SteppedState;
-use stripmine_physics::method::lattice_md::Grains;
-use stripmine_physics::method::lattice_md::{Contacts, GearValues, Machine, Model, Scheme, Watch};
-use stripmine_physics::method::{Failure, FailureKind};
-use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::method::lattice_md::SteppedGrains;
+use stripmine_physics::method::lattice_md::{
+    ContactSearch, ContactWatch, GearValues, GranularModel, GranularScheme, ProgramExecution,
+};
+use stripmine_physics::method::{FailureKind, PhysicsFailure};
+use stripmine_physics::observe::{Observation, SceneProperties};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Precision;
 use support::{CONTACT, advance, arena, fast, gas, grain, simulate};
 
-fn lattice(start: &(Model, Particles)) -> Grains {
-    simulate(Precision::F64, start, Contacts::Lattice, fast())
+fn lattice(start: &(GranularModel, Particles)) -> SteppedGrains {
+    simulate(Precision::F64, start, ContactSearch::Lattice, fast())
 }
 
-fn observe(method: &Grains, model: &Model) -> Observation {
-    Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(model))
+fn observe(method: &SteppedGrains, model: &GranularModel) -> Observation {
+    Observation::of(method.steps(), method.time(), &method.particles(), &SceneProperties::of(model))
 }
 
 // ---- a gas ----------------------------------------------------------------------------------------------
@@ -31,7 +33,7 @@ fn energy_error(values: GearValues, dt: f64, time: f64) -> [f64; 2] {
     let mut start = gas(400, 0.84, 11);
     start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
     start.0.friction = false;
-    (start.0.scheme, start.0.dt) = (Scheme::Gear(values), dt);
+    (start.0.scheme, start.0.dt) = (GranularScheme::Gear(values), dt);
     let mut gas = lattice(&start);
     let energy = observe(&gas, &start.0).energy();
     let samples = 100;
@@ -58,7 +60,7 @@ fn soft_discs_have_their_effective_hard_disc_pressure() {
     }
     start.0.contact = Contact { normal_damping: 0.0, shear_damping: 0.0, friction: 0.0, ..CONTACT };
     start.0.friction = false;
-    (start.0.scheme, start.0.dt) = (Scheme::Gear(GearValues::Five), 0.02);
+    (start.0.scheme, start.0.dt) = (GranularScheme::Gear(GearValues::Five), 0.02);
     let mut gas = lattice(&start);
     advance(&mut gas, 2_000);
     let area = start.0.sides[0] * start.0.sides[1];
@@ -127,7 +129,7 @@ const MASSES: [f64; 2] = [1.0, 0.7];
 const EFFECTIVE: f64 = MASSES[0] * MASSES[1] / (MASSES[0] + MASSES[1]);
 
 /// Two discs that touch after a number of steps, approaching at `normal` and sliding past each other at `shear`.
-fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Model, Particles) {
+fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (GranularModel, Particles) {
     let x = 4.0 + RADII[0] + RADII[1] + steps * normal * dt;
     // In the frame of the centre of mass.
     let share = [MASSES[1], -MASSES[0]].map(|m| m / (MASSES[0] + MASSES[1]));
@@ -137,7 +139,7 @@ fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Mo
     ];
     let (mut model, particles) = arena([16, 16], true, &discs);
     model.friction = contact.friction > 0.0;
-    (model.contact, model.dt, model.scheme) = (contact, dt, Scheme::Gear(GearValues::Four));
+    (model.contact, model.dt, model.scheme) = (contact, dt, GranularScheme::Gear(GearValues::Four));
     (model, particles)
 }
 
@@ -273,7 +275,7 @@ fn undamped_collisions_converge_above_second_order() {
         let errors = dts.map(|dt| {
             let square = |phase: i32| {
                 let mut start = pair(contact, dt, 1.0 + f64::from(phase) / f64::from(phases), [speed, 0.0]);
-                start.0.scheme = Scheme::Gear(values);
+                start.0.scheme = GranularScheme::Gear(values);
                 let mut collision = lattice(&start);
                 advance(&mut collision, (1.3 * hertz_time(contact.stiffness, speed) / dt) as u64 + 3);
                 let (overlap, _, [away, _]) = apart(collision.particles().all());
@@ -398,12 +400,12 @@ fn friction_is_coulombs_for_sliding_surfaces() {
 
 // ---- the same bits --------------------------------------------------------------------------------------
 
-fn bits(method: &Grains) -> Vec<(String, Vec<u64>)> {
-    let bits = |column: Column| match column {
-        Column::F64(values) => values.into_iter().map(f64::to_bits).collect(),
-        Column::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
-        Column::U32(values) => values.into_iter().map(u64::from).collect(),
-        Column::U64(values) => values,
+fn bits(method: &SteppedGrains) -> Vec<(String, Vec<u64>)> {
+    let bits = |column: CheckpointColumn| match column {
+        CheckpointColumn::F64(values) => values.into_iter().map(f64::to_bits).collect(),
+        CheckpointColumn::F32(values) => values.into_iter().map(|x| u64::from(x.to_bits())).collect(),
+        CheckpointColumn::U32(values) => values.into_iter().map(u64::from).collect(),
+        CheckpointColumn::U64(values) => values,
     };
     method.columns().into_iter().map(|(name, column)| (name, bits(column))).collect()
 }
@@ -415,8 +417,8 @@ fn bits_do_not_depend_on_threads_or_instructions() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             assert_eq!(rayon::current_num_threads(), threads);
-            let machine = Machine { execution: Execution::Chained, set };
-            let mut gas = simulate(Precision::F64, &start, Contacts::Lattice, machine);
+            let machine = ProgramExecution { execution: Execution::Chained, set };
+            let mut gas = simulate(Precision::F64, &start, ContactSearch::Lattice, machine);
             advance(&mut gas, 50);
             let touching = gas.forces().iter().filter(|force| force[0] != 0.0).count();
             assert!(touching > 500, "the gas must collide: {touching}");
@@ -434,7 +436,7 @@ fn bits_do_not_depend_on_threads_or_instructions() {
 // ---- failures -------------------------------------------------------------------------------------------
 
 /// Steps until the failure, which must occur in step `at`.
-fn breaks(start: &(Model, Particles), most: u64, kind: FailureKind, at: u64) -> Failure {
+fn breaks(start: &(GranularModel, Particles), most: u64, kind: FailureKind, at: u64) -> PhysicsFailure {
     let mut method = lattice(start);
     for _ in 0..most {
         if let Err(failure) = method.step() {
@@ -447,7 +449,7 @@ fn breaks(start: &(Model, Particles), most: u64, kind: FailureKind, at: u64) -> 
 }
 
 /// Sorted ids of the discs that a failure names.
-fn ids(failure: &Failure) -> Vec<u32> {
+fn ids(failure: &PhysicsFailure) -> Vec<u32> {
     let mut ids: Vec<u32> = failure.culprits.iter().map(|culprit| culprit.id).collect();
     ids.sort_unstable();
     ids
@@ -477,7 +479,7 @@ fn disc_leaving_a_closed_box_is_named() {
 }
 
 /// Two discs that hardly repel each other, approaching by 0.04 a step.
-fn ghosts(stop_penetration: f64) -> (Model, Particles) {
+fn ghosts(stop_penetration: f64) -> (GranularModel, Particles) {
     let discs = [
         grain(5, [2.02, 3.25], [4.0, 0.0], 0.5, 1.0),
         grain(9, [4.0, 1.0], [0.0; 2], 0.5, 1.0),
@@ -485,7 +487,7 @@ fn ghosts(stop_penetration: f64) -> (Model, Particles) {
     ];
     let (mut model, particles) = arena([16, 16], false, &discs);
     model.contact.stiffness = 1e-9;
-    model.watch = Some(Watch::new(0.1, stop_penetration, 0.5));
+    model.watch = Some(ContactWatch::new(0.1, stop_penetration, 0.5));
     (model, particles)
 }
 

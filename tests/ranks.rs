@@ -10,9 +10,11 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use stripmine::provenance::built;
 use stripmine_kernels::noise::{self, Stream};
-use stripmine_physics::method::{Entry, METHODS, Prepared, Purpose, RANK_ENDED, Snapshot, Until, load};
-use stripmine_physics::ranks::{self, Crew, Parcel, RankError, Ranks, local};
-use stripmine_physics::run::{Ending, Existing, Job, RunError, run};
+use stripmine_physics::method::{
+    METHODS, MethodEntry, Prepared, RANK_ENDED, Snapshot, StartPurpose, Until, load,
+};
+use stripmine_physics::ranks::{self, Parcel, RankBackend, RankError, Ranks, local};
+use stripmine_physics::run::{Ending, ExistingRun, RunError, RunJob, run};
 
 /// A scene of several bands, with its number of steps.
 struct Scene {
@@ -111,12 +113,12 @@ const WHOLE: u64 = 15;
 
 /// Samples of a run on a number of ranks, or the reason why it cannot start.
 fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
-    ranks::over(Crew::Threads(ranks), || seen_as_begun(prepared, steps))
+    ranks::over(RankBackend::Threads(ranks), || seen_as_begun(prepared, steps))
 }
 
 /// Like [`seen`], on the ranks of the current crew.
 fn seen_as_begun(prepared: &Prepared, steps: u64) -> Result<Seen, String> {
-    let mut simulation = prepared.start(Purpose::Run).map_err(|failure| failure.to_string())?;
+    let mut simulation = prepared.start(StartPurpose::Run).map_err(|failure| failure.to_string())?;
     let mut seen = Seen::default();
     for part in 0..=LOOKS {
         let until = Until::Steps(part * steps / LOOKS);
@@ -213,14 +215,14 @@ fn resumes_on_a_different_rank_count() {
         let [half, end] = [scene.steps / 2, scene.steps].map(Until::Steps);
         let whole = seen(&prepared, 1, scene.steps).unwrap();
         let Some(last) = whole.snapshots.last() else { continue };
-        let (clock, state) = ranks::over(Crew::Threads(2), || {
-            let mut first = prepared.start(Purpose::Run).unwrap();
+        let (clock, state) = ranks::over(RankBackend::Threads(2), || {
+            let mut first = prepared.start(StartPurpose::Run).unwrap();
             first.advance(&[half], &stop).unwrap();
             (first.clock(), first.snapshot())
         });
         for ranks in [1, 3] {
-            ranks::over(Crew::Threads(ranks), || {
-                let mut second = prepared.start(Purpose::Run).unwrap();
+            ranks::over(RankBackend::Threads(ranks), || {
+                let mut second = prepared.start(StartPurpose::Run).unwrap();
                 second.restore(clock, state.clone()).unwrap();
                 second.advance(&[end], &stop).unwrap();
                 assert!(second.snapshot() == *last, "{} {search}: from 2 on {ranks} ranks", scene.preset);
@@ -261,7 +263,7 @@ fn too_many_ranks_are_refused() {
 #[test]
 #[ignore = "long: cargo test --release --test ranks -- --ignored --nocapture"]
 fn random_scenes_on_ranks_have_the_same_bits() {
-    let mut random = Stream::new(43, noise::Purpose::Test, 0);
+    let mut random = Stream::new(43, noise::RandomPurpose::Test, 0);
     let (mut compared, mut failed) = (0, 0);
     while compared < 300 {
         let scene = &SCENES[random.random_range(0..SCENES.len())];
@@ -311,7 +313,7 @@ enum Fault {
 /// A thread of this test that acts as a process.
 #[derive(Clone)]
 struct Process {
-    ranks: Arc<Mutex<local::Local>>,
+    ranks: Arc<Mutex<local::ThreadRank>>,
     rank: usize,
     count: usize,
     fault: Fault,
@@ -368,7 +370,7 @@ impl Ranks for Process {
 /// Runs a closure as the first of several processes, while the others take part in a scene.
 fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -> R) -> R {
     let count = faults.len();
-    let begin = |ranks: local::Local, fault: Fault| {
+    let begin = |ranks: local::ThreadRank, fault: Fault| {
         let (rank, told) = (ranks.rank(), Arc::default());
         PROCESS.set(Some(Process { ranks: Arc::new(Mutex::new(ranks)), rank, count, fault, told }));
     };
@@ -380,12 +382,12 @@ fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -
                 begin(ranks, fault);
                 // Other processes get no simulation, but the reason why their part ended.
                 let _ = catch_unwind(AssertUnwindSafe(|| {
-                    ranks::over(Crew::Processes(join), || prepared.start(Purpose::Run).map(drop))
+                    ranks::over(RankBackend::Processes(join), || prepared.start(StartPurpose::Run).map(drop))
                 }));
             });
         }
         begin(own.0, own.1);
-        let found = ranks::over(Crew::Processes(join), first);
+        let found = ranks::over(RankBackend::Processes(join), first);
         let _ = ranks::dismiss(join().as_ref());
         PROCESS.take();
         found
@@ -394,11 +396,11 @@ fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -
 
 /// Runs a scene into a folder, as the first of several processes.
 fn run_as_processes(
-    (prepared, entry): (&Prepared, &'static Entry),
+    (prepared, entry): (&Prepared, &'static MethodEntry),
     faults: &[Fault],
-    (folder, existing): (&Path, Existing),
+    (folder, existing): (&Path, ExistingRun),
 ) -> Result<Ending, RunError> {
-    let job = Job { prepared, quantities: entry.quantities, program: &built() };
+    let job = RunJob { prepared, quantities: entry.quantities, program: &built() };
     as_processes(prepared, faults, || run(job, folder, existing, &AtomicBool::new(false), |_, _| {}, |_| {}))
 }
 
@@ -413,7 +415,7 @@ const WRITTEN: [(&str, &[&str]); 4] = [
 const OUTPUT: [&str; 4] =
     ["run.thermo_every=4", "run.snapshot_every=8", "run.checkpoint_every=12", "output.trajectory=true"];
 
-fn written((preset, more): (&'static str, &'static [&'static str])) -> (Prepared, &'static Entry) {
+fn written((preset, more): (&'static str, &'static [&'static str])) -> (Prepared, &'static MethodEntry) {
     let hot: &[&str] = if preset == "bench" { HOT } else { &[] };
     let sets = hot.iter().chain(more).chain(&OUTPUT).map(|&set| set.to_owned());
     load(preset, &sets.collect::<Vec<_>>(), METHODS).unwrap()
@@ -437,7 +439,7 @@ fn lost_rank_ends_the_run_and_is_named() {
         let carried_out = |faults: &[Fault], name: &str, existing| {
             run_as_processes((&prepared, entry), faults, (&folder.path().join(name), existing))
         };
-        if let Err(error) = carried_out(&[Fault::None; 3], "whole", Existing::Refuse) {
+        if let Err(error) = carried_out(&[Fault::None; 3], "whole", ExistingRun::Refuse) {
             panic!("{scene:?}: {error}");
         }
         let expected = lines(&folder.path().join("whole"));
@@ -451,7 +453,8 @@ fn lost_rank_ends_the_run_and_is_named() {
                 faults[lost] = fault;
                 let name = format!("{fault:?}");
                 let what = format!("{scene:?}: rank {lost}: {name}");
-                let error = carried_out(&faults, &name, Existing::Refuse).map(drop).unwrap_err().to_string();
+                let error =
+                    carried_out(&faults, &name, ExistingRun::Refuse).map(drop).unwrap_err().to_string();
                 assert!(
                     error.contains(&format!("rank {named} {words}\n  help: see its last message")),
                     "{what}: {error}"
@@ -463,7 +466,7 @@ fn lost_rank_ends_the_run_and_is_named() {
                 for (found, expected) in lines(&out).iter().zip(&expected) {
                     assert!(found.len() < expected.len() && expected.starts_with(found), "{what}: {found:?}");
                 }
-                carried_out(&[Fault::None; 2], &name, Existing::Resume { other_version: false }).unwrap();
+                carried_out(&[Fault::None; 2], &name, ExistingRun::Resume { other_version: false }).unwrap();
                 assert!(lines(&out) == expected, "{what}: gone on with");
             }
         }
@@ -476,7 +479,7 @@ fn simulations_without_a_rank_return_nothing() {
     for scene in WRITTEN {
         let (prepared, _) = written(scene);
         as_processes(&prepared, &[Fault::None, Fault::Ends(20)], || {
-            let mut simulation = prepared.start(Purpose::Run).unwrap();
+            let mut simulation = prepared.start(StartPurpose::Run).unwrap();
             let failure = simulation.advance(&[Until::Steps(40)], &AtomicBool::new(false)).unwrap_err();
             assert_eq!(
                 (failure.kind, failure.message.as_str()),

@@ -2,11 +2,11 @@
 //! known motions.
 
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::method::lattice_md::{Checked, Document};
-use stripmine_physics::method::lattice_md::{Grains, Totals};
+use stripmine_physics::method::lattice_md::{CheckedGranularScene, GranularDocument};
+use stripmine_physics::method::lattice_md::{GranularTotals, SteppedGrains};
 use stripmine_physics::method::lattice_md::{assemble, assemble_following_energy, model};
-use stripmine_physics::method::{Culprit, Failure, FailureKind, METHODS, Purpose, Until, load};
-use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::method::{Culprit, FailureKind, METHODS, PhysicsFailure, StartPurpose, Until, load};
+use stripmine_physics::observe::{Observation, SceneProperties};
 
 /// Every engine, with the overrides that choose it.
 const ENGINES: [(&str, &[&str]); 6] = [
@@ -18,34 +18,34 @@ const ENGINES: [(&str, &[&str]); 6] = [
     ("fast lists", &["search.by=neighbor-list", "machine.engine=fast"]),
 ];
 
-fn checked(scene: &str, overrides: &[&[&str]]) -> Checked {
+fn checked(scene: &str, overrides: &[&[&str]]) -> CheckedGranularScene {
     let overrides: Vec<String> = overrides.concat().into_iter().map(str::to_owned).collect();
     let document = match scene.contains('\n') {
-        true => Document::parse("scene", scene, &overrides),
-        false => Document::load(scene, &overrides),
+        true => GranularDocument::parse("scene", scene, &overrides),
+        false => GranularDocument::load(scene, &overrides),
     };
-    document.and_then(Document::check).unwrap_or_else(|errors| panic!("{errors}"))
+    document.and_then(GranularDocument::check).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn refused(scene: &str, overrides: &[&str]) -> String {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     let document = match scene.contains('\n') {
-        true => Document::parse("scene", scene, &overrides),
-        false => Document::load(scene, &overrides),
+        true => GranularDocument::parse("scene", scene, &overrides),
+        false => GranularDocument::load(scene, &overrides),
     };
-    document.and_then(Document::check).expect_err("must be refused").to_string()
+    document.and_then(GranularDocument::check).expect_err("must be refused").to_string()
 }
 
-fn observe(checked: &Checked, method: &Grains) -> Observation {
-    Observation::of(method.steps(), method.time(), &method.particles(), &Scenery::of(&model(checked)))
+fn observe(checked: &CheckedGranularScene, method: &SteppedGrains) -> Observation {
+    Observation::of(method.steps(), method.time(), &method.particles(), &SceneProperties::of(&model(checked)))
 }
 
 /// Step of a failure, and the first particle that it names.
-fn step_and_first(failure: &Failure) -> (u64, Culprit) {
+fn step_and_first(failure: &PhysicsFailure) -> (u64, Culprit) {
     (failure.at.expect("a moment").steps, failure.culprits[0])
 }
 
-fn advance(method: &mut Grains, steps: u64) {
+fn advance(method: &mut SteppedGrains, steps: u64) {
     (0..steps).for_each(|_| method.step().unwrap_or_else(|failure| panic!("{failure}")));
 }
 
@@ -100,7 +100,7 @@ fn lists_handle_discs_in_one_cell() {
         }
         assert_eq!(deep.deep_disc_steps, also_deep.deep_disc_steps, "{name}");
     }
-    let failure = |engine: &[&str]| -> Failure {
+    let failure = |engine: &[&str]| -> PhysicsFailure {
         let mut method = assemble(&checked(&scene, &[engine, &["law.stop_penetration=0.3"]])).unwrap();
         (0..1000).find_map(|_| method.step().err()).expect("too deep")
     };
@@ -211,12 +211,12 @@ fn absolute_single_precision_is_refused_far_away() {
 /// Dissipation is counted in every contact and step: rare rows change nothing, and all engines agree.
 #[test]
 fn dissipation_balances_the_energy() {
-    let run = |engine: &[&str], steps: u64| -> (Totals, f64) {
+    let run = |engine: &[&str], steps: u64| -> (GranularTotals, f64) {
         let more =
             ["particles.count=100", "law.normal_damping=0.3", "law.shear_damping=0.2", "law.friction=0.4"];
         let checked = checked("dense-gas", &[&more, engine]);
         let mut method = assemble_following_energy(&checked).unwrap();
-        let energy = |method: &Grains| {
+        let energy = |method: &SteppedGrains| {
             let seen = observe(&checked, method);
             seen.kinetic + seen.rotational + seen.elastic
         };
@@ -246,7 +246,7 @@ fn work_of_gravity_and_walls_is_counted() {
             let checked = checked(scene, &[engine]);
             let mut method = assemble_following_energy(&checked).unwrap();
             let start = method.particles();
-            let inner = |method: &Grains| {
+            let inner = |method: &SteppedGrains| {
                 let seen = observe(&checked, method);
                 seen.kinetic + seen.rotational + seen.elastic
             };
@@ -284,8 +284,9 @@ fn corrections_across_sides_do_no_work() {
             );
         let gear = ["integrator.kind=gear", "integrator.values=5"];
         let overrides: Vec<String> = [engine, &gear].concat().into_iter().map(str::to_owned).collect();
-        let prepared = Document::parse("scene", &scene, &overrides).and_then(Document::prepare).unwrap();
-        let mut run = prepared.start(Purpose::Run).unwrap();
+        let prepared =
+            GranularDocument::parse("scene", &scene, &overrides).and_then(GranularDocument::prepare).unwrap();
+        let mut run = prepared.start(StartPurpose::Run).unwrap();
         run.advance(&[Until::Steps(STEP)], &AtomicBool::new(false)).unwrap();
         let quantities = METHODS[0].quantities;
         let error = quantities.iter().position(|quantity| quantity.name == "balance_error").unwrap();
@@ -309,7 +310,7 @@ fn energy_balance_is_continuous_across_sides() {
     for search in ["lattice", "neighbor-list", "sectors"] {
         let overrides = ["integrator.dt=5e-5".to_owned(), format!("search.by={search}")];
         let (prepared, _) = load("pipe-small", &overrides, METHODS).unwrap();
-        let mut simulation = prepared.start(Purpose::Run).unwrap();
+        let mut simulation = prepared.start(StartPurpose::Run).unwrap();
         for step in 1..=1300 {
             simulation.advance(&[Until::Steps(step)], &AtomicBool::new(false)).unwrap();
             // A fall by the length of the pipe is 3.2e-5 J for a grain.
@@ -331,7 +332,7 @@ fn disc_leaving_for_a_moment_is_detected() {
         let mut method = assemble(&checked(&scene, &[engine, more])).unwrap();
         (0..200).find_map(|_| method.step().err()).expect("it left the box")
     };
-    let left = |failure: Failure| {
+    let left = |failure: PhysicsFailure| {
         assert_eq!(failure.kind, FailureKind::OUT_OF_BOX, "{failure}");
         let (step, first) = step_and_first(&failure);
         (step, first.id)
@@ -424,7 +425,9 @@ fn boxes_too_small_for_lists_are_refused() {
         let scene = discs(sides, "[[1.0, 1.0]]", "[[0.1, 0.0]]", 0.005);
         for (name, engine) in ENGINES {
             let overrides: Vec<String> = engine.iter().map(|&text| text.to_owned()).collect();
-            if let Ok(checked) = Document::parse("scene", &scene, &overrides).and_then(Document::check) {
+            if let Ok(checked) =
+                GranularDocument::parse("scene", &scene, &overrides).and_then(GranularDocument::check)
+            {
                 assert!(assemble(&checked).is_ok(), "{name} in {sides:?}");
             }
         }

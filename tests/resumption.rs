@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use stripmine_physics::io::checkpoint::{Checkpoint, Counter};
+use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointCounter};
 
 fn stripmine(scene: &str, folder: &Path, more: &[&str]) -> Command {
     let mut command = Command::cargo_bin("stripmine").unwrap();
@@ -150,7 +150,7 @@ fn other_versions_are_noted_or_refused() {
     assert!(said(&output).contains("warning: resumed at step 60") && said(&output).contains("0123456789ab"));
     assert!(notes(&path).len() == 1 && notes(&path)[0].contains("0123456789ab"), "{:?}", notes(&path));
     forge(&path, |checkpoint| {
-        checkpoint.counters.insert("bits".to_owned(), Counter::Count(99));
+        checkpoint.counters.insert("bits".to_owned(), CheckpointCounter::Count(99));
     });
     let before = bits(&path);
     refused(&run(&path, 100, &["--resume"]), 2, &["--other-version", "bits"]);

@@ -3,10 +3,12 @@
 use assert_cmd::Command;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use stripmine_physics::method::lattice_md::{Document, ENTRY, GearValues, Scene, Scheme};
+use stripmine_physics::method::lattice_md::{
+    ENTRY, GearValues, GranularDocument, GranularScene, GranularScheme,
+};
 use stripmine_physics::method::{METHODS, load};
 use stripmine_physics::particles;
-use stripmine_physics::scene::{Key, Kind, Reason, Start};
+use stripmine_physics::scene::{DiscStart, Key, KeyValueKind, MistakeKind};
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -66,7 +68,7 @@ fn bad_scenes_are_refused_with_expected_errors() {
 #[test]
 fn presets_pass_the_check() {
     for preset in ENTRY.vocabulary.presets {
-        let checked = Document::load(preset.name, &[]).and_then(Document::check);
+        let checked = GranularDocument::load(preset.name, &[]).and_then(GranularDocument::check);
         let checked = checked.unwrap_or_else(|errors| panic!("{}: {errors}", preset.name));
         let soft = checked.warnings.iter().filter(|warning| warning.key == "law.stiffness").count();
         assert_eq!(checked.warnings.len(), soft, "{}", preset.name);
@@ -80,7 +82,7 @@ fn presets_pass_the_check() {
         }
         let ids: Vec<u32> = checked.particles.all().iter().map(|disc| disc.id).collect();
         assert!(ids.iter().copied().eq(1..=ids.len() as u32));
-        let again = Scene::load(preset.name).unwrap().check().unwrap();
+        let again = GranularScene::load(preset.name).unwrap().check().unwrap();
         assert_eq!(again, checked, "{}", preset.name);
     }
 }
@@ -89,7 +91,7 @@ fn presets_pass_the_check() {
 #[test]
 fn pipe_has_the_tried_numbers() {
     for (name, grains, walls) in [("pipe", 596, 600), ("pipe-small", 238, 240)] {
-        let checked = Scene::load(name).unwrap().check().unwrap();
+        let checked = GranularScene::load(name).unwrap().check().unwrap();
         let discs = &checked.particles;
         assert_eq!((discs.grain_count(), discs.len() - discs.grain_count()), (grains, walls));
         let lining = &discs.all()[grains..];
@@ -98,7 +100,7 @@ fn pipe_has_the_tried_numbers() {
             let along = (i % (walls / 2)) as f64 + if upper { 0.5 } else { 0.0 };
             assert!((disc.position[0] - 0.027 * along).abs() < 1e-9 && disc.radius == 0.009);
             assert!((disc.position[1] - if upper { 0.0365 } else { -0.0365 }).abs() < 1e-12);
-            assert_eq!((disc.kind, disc.velocity), (particles::Kind::Wall, [0.0; 3]));
+            assert_eq!((disc.kind, disc.velocity), (particles::ParticleKind::Wall, [0.0; 3]));
         }
         let speeds: f64 = discs.grains().iter().map(|d| d.velocity[0].powi(2) + d.velocity[1].powi(2)).sum();
         assert!(((speeds / (2.0 * grains as f64)).sqrt() / 0.3 - 1.0).abs() < 0.1);
@@ -118,10 +120,10 @@ fn pipe_has_the_tried_numbers() {
 /// BP93's cells, d = R_max, are 736 × 8.
 #[test]
 fn cells_of_the_paper_can_be_set() {
-    let scene = Scene::load("pipe").unwrap().with_overrides(&["search.cell_edge=0.011"]).unwrap();
+    let scene = GranularScene::load("pipe").unwrap().with_overrides(&["search.cell_edge=0.011"]).unwrap();
     let geometry = scene.check().unwrap().geometry;
     assert_eq!((geometry.shape.columns(), geometry.shape.rows()), (736, 8));
-    let fewest = Scene::load("pipe").unwrap().check().unwrap().geometry;
+    let fewest = GranularScene::load("pipe").unwrap().check().unwrap().geometry;
     assert!(fewest.shape.cells() < geometry.shape.cells());
 }
 
@@ -222,11 +224,11 @@ fn written_scenes_are_read_back() {
     ];
     let presets = ENTRY.vocabulary.presets.iter().map(|preset| (preset.name, Vec::new()));
     for (name, overrides) in presets.chain(variants) {
-        let scene = Scene::load(name).unwrap();
+        let scene = GranularScene::load(name).unwrap();
         let scene = scene.with_overrides(&overrides).unwrap_or_else(|e| panic!("{name} {overrides:?}: {e}"));
         let text = scene.to_toml();
-        let again =
-            Scene::parse("elsewhere/scene.toml", &text).unwrap_or_else(|e| panic!("{name}: {e}\n{text}"));
+        let again = GranularScene::parse("elsewhere/scene.toml", &text)
+            .unwrap_or_else(|e| panic!("{name}: {e}\n{text}"));
         assert_eq!(again, scene, "{name} {overrides:?}");
         assert_eq!(again.to_toml(), text);
         again.check().unwrap_or_else(|errors| panic!("{name} {overrides:?}: {errors}"));
@@ -238,25 +240,31 @@ fn written_scenes_are_read_back() {
 fn overrides_replace_conflicting_values() {
     let load = |name: &str, overrides: &[&str]| {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
-        Document::load(name, &overrides).map(|document| document.scene)
+        GranularDocument::load(name, &overrides).map(|document| document.scene)
     };
     let scene = load("pipe", &["run.steps=50", "law.friction=0", "particles.count=7"]).unwrap();
     assert_eq!((scene.run.steps, scene.law.contact.friction), (50, 0.0));
-    assert!(matches!(scene.start, Start::Pipe { amount: stripmine_physics::scene::Amount::Count(7), .. }));
+    assert!(matches!(
+        scene.start,
+        DiscStart::Pipe { amount: stripmine_physics::scene::Amount::Count(7), .. }
+    ));
     assert_eq!(load("pipe", &["run.time=0.01"]).unwrap().run.steps, 100);
     // Two overrides that exclude each other are an error.
     assert!(load("pipe", &["run.time=0.01", "run.steps=3"]).is_err());
     // A hexagonal start needs both, so there they do not exclude each other.
     let bench = load("bench", &["particles.count=500", "integrator.values=6"]).unwrap();
-    let Start::Hexagonal { count, packing_fraction, .. } = bench.start else { panic!() };
-    assert_eq!((count, packing_fraction, bench.integrator.scheme), (500, 0.6, Scheme::Gear(GearValues::Six)));
+    let DiscStart::Hexagonal { count, packing_fraction, .. } = bench.start else { panic!() };
+    assert_eq!(
+        (count, packing_fraction, bench.integrator.scheme),
+        (500, 0.6, GranularScheme::Gear(GearValues::Six))
+    );
     // Numbers, words with and without quotes.
     let scene = load("pipe", &["machine.precision=f32", "machine.coordinates=\"absolute\""]).unwrap();
     assert_eq!(scene.machine.precision, stripmine_physics::scene::Precision::F32);
     // An override corrects a mistake of the file.
     let preset = ENTRY.vocabulary.presets.iter().find(|preset| preset.name == "two-discs").unwrap();
     let broken = preset.text.replace("dt = 1e-3", "dt = -1");
-    assert!(Scene::parse("broken", &broken).is_err());
+    assert!(GranularScene::parse("broken", &broken).is_err());
 }
 
 /// The path of a start file is relative to its scene.
@@ -268,7 +276,8 @@ fn start_file_paths_are_relative_to_the_scene() {
     let good = std::fs::read_to_string(bad.join("start-file-of-another-box.toml")).unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, good.replace("[20.0, 20.0]", "[10.0, 8.0]")).unwrap();
-    let checked = Document::load(path.to_str().unwrap(), &[]).and_then(Document::check).unwrap();
+    let checked =
+        GranularDocument::load(path.to_str().unwrap(), &[]).and_then(GranularDocument::check).unwrap();
     assert_eq!(checked.particles.len(), 2);
     assert_eq!(checked.particles.all()[0].velocity, [1.0, 0.0, 0.0]);
     assert!(checked.alike);
@@ -314,10 +323,10 @@ fn damaged_scenes_never_panic() {
     for preset in ENTRY.vocabulary.presets {
         let bytes = preset.text.as_bytes();
         for at in (0..bytes.len()).step_by(7) {
-            let _ = Scene::parse("cut", &String::from_utf8_lossy(&bytes[..at]));
+            let _ = GranularScene::parse("cut", &String::from_utf8_lossy(&bytes[..at]));
             let mut flipped = bytes.to_vec();
             flipped[at] ^= 1 << (at % 7);
-            let _ = Scene::parse("flipped", &String::from_utf8_lossy(&flipped));
+            let _ = GranularScene::parse("flipped", &String::from_utf8_lossy(&flipped));
         }
     }
     for text in [
@@ -332,10 +341,10 @@ fn damaged_scenes_never_panic() {
         "\0",
         "é = 1",
     ] {
-        assert!(Scene::parse("odd", text).is_err(), "{text:?}");
+        assert!(GranularScene::parse("odd", text).is_err(), "{text:?}");
     }
     let deep = format!("x = {}", "[".repeat(100_000));
-    assert!(Scene::parse("deep", &deep).is_err());
+    assert!(GranularScene::parse("deep", &deep).is_err());
 }
 
 /// Numbers at the ends of the number format give a scene or errors, in finite time and memory.
@@ -349,10 +358,10 @@ fn extreme_numbers_never_panic() {
     ] {
         for key in ENTRY.vocabulary.keys.keys() {
             let shapes: &[&str] = match key.kind {
-                Kind::Number(_) | Kind::Whole(..) => &["{}"],
-                Kind::Pair(_) => &["[{}, 1.0]", "[1.0, {}]"],
-                Kind::Pairs => &["[[{}, 1.0], [1.0, {}]]"],
-                Kind::Numbers(_) => &["[{}, 1.0]"],
+                KeyValueKind::Number(_) | KeyValueKind::Whole(..) => &["{}"],
+                KeyValueKind::Pair(_) => &["[{}, 1.0]", "[1.0, {}]"],
+                KeyValueKind::Pairs => &["[[{}, 1.0], [1.0, {}]]"],
+                KeyValueKind::Numbers(_) => &["[{}, 1.0]"],
                 _ => continue,
             };
             for (extreme, shape) in ["0", "5e-324", "1e-308", "1e-30", "1e20", "1e308", "-1e308", "-0.0"]
@@ -360,9 +369,13 @@ fn extreme_numbers_never_panic() {
                 .flat_map(|extreme| shapes.iter().map(move |shape| (extreme, shape)))
             {
                 let set = format!("{}={}", key.path(), shape.replace("{}", extreme));
-                if let Ok(checked) = Document::load(preset, &[few.to_owned(), set]).and_then(Document::check)
+                if let Ok(checked) =
+                    GranularDocument::load(preset, &[few.to_owned(), set]).and_then(GranularDocument::check)
                 {
-                    assert_eq!(Scene::parse("again", &checked.scene.to_toml()).unwrap(), checked.scene);
+                    assert_eq!(
+                        GranularScene::parse("again", &checked.scene.to_toml()).unwrap(),
+                        checked.scene
+                    );
                 }
             }
         }
@@ -387,8 +400,8 @@ fn unreadable_scenes_are_named() {
         assert_eq!(output.status.code(), Some(3), "{said}");
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     }
-    let errors = Scene::load("no-such").unwrap_err();
-    assert_eq!(errors.0[0].reason, Reason::Unreadable);
+    let errors = GranularScene::load("no-such").unwrap_err();
+    assert_eq!(errors.0[0].reason, MistakeKind::Unreadable);
 }
 
 /// The verbs of scenes print text and data.
@@ -403,7 +416,7 @@ fn scene_verbs_print_presets_keys_and_checks() {
     assert_eq!(list.as_array().unwrap().len(), all);
     assert!(all > ENTRY.vocabulary.presets.len());
     let shown = stripmine(&["scene", "show", "two-discs"]);
-    assert!(Scene::parse("shown", &String::from_utf8(shown.stdout).unwrap()).is_ok());
+    assert!(GranularScene::parse("shown", &String::from_utf8(shown.stdout).unwrap()).is_ok());
     assert_eq!(stripmine(&["scene", "show", "three-discs"]).status.code(), Some(2));
     let keys = json(&["scene", "keys", "--json"]);
     assert_eq!(keys.as_array().unwrap().len(), ENTRY.vocabulary.keys.keys().count());
@@ -455,17 +468,19 @@ fn defaults_follow_from_given_values() {
              periodic = [true, false]\n[particles]\ngenerate = \"pipe\"\ncount = 9\nradius = 0.5\nradius_spread = {spread}\n\
              mass = 1.0\nclear_width = 6.0\n[law]\nstiffness = 100.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n"
         );
-        Scene::parse("scene.toml", &text).unwrap()
+        GranularScene::parse("scene.toml", &text).unwrap()
     };
     for (spread, cut) in [(0.0, 0.0), (0.03, 0.06), (0.2, 0.12)] {
-        let Start::Pipe { grains, lining, .. } = scene(spread).start else { panic!("a pipe") };
+        let DiscStart::Pipe { grains, lining, .. } = scene(spread).start else { panic!("a pipe") };
         assert!((grains.cut - cut).abs() < 1e-15, "{spread}: {}", grains.cut);
         assert!((lining.radius - 0.45).abs() < 1e-15 && (lining.spacing - 1.35).abs() < 1e-15, "{lining:?}");
     }
     let listed = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"reduced\"\n[domain]\nsides = [9.0, 9.0]\n[particles]\n\
                   generate = \"list\"\npositions = [[2.0, 2.0]]\nwall_positions = [[6.0, 6.0]]\nradius = 0.5\nmass = 1.0\n\
                   [law]\nstiffness = 100.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n";
-    let Start::List(list) = Scene::parse("scene.toml", listed).unwrap().start else { panic!("a list") };
+    let DiscStart::List(list) = GranularScene::parse("scene.toml", listed).unwrap().start else {
+        panic!("a list")
+    };
     assert!((list.wall_radius - 0.45).abs() < 1e-15 && list.radii == [0.5] && list.velocities == [[0.0; 2]]);
 }
 

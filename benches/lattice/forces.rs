@@ -12,9 +12,9 @@ use std::time::Duration;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, Model, Part, Watch, execute};
+use stripmine_physics::method::lattice_md::{ContactWatch, GranularModel, Part, ProgramArrays, execute};
 
-fn places<T: Precision>(model: &Model) -> Vec<Place<T>> {
+fn places<T: Precision>(model: &GranularModel) -> Vec<Place<T>> {
     let place = |offset: &stripmine_kernels::mask::Offset| {
         let way =
             [f64::from(offset.columns) * model.frame.edge[0], f64::from(offset.rows) * model.frame.edge[1]];
@@ -69,8 +69,8 @@ by_hand!(f32, avx2_f32, avx512_f32);
 fn hand_written<P: ByHand, const FRICTION: bool>(
     group: &mut BenchmarkGroup<'_, WallTime>,
     name: &str,
-    model: &Model,
-    arrays: &mut Arrays<f64, P>,
+    model: &GranularModel,
+    arrays: &mut ProgramArrays<f64, P>,
 ) {
     let programs = programs_of::<P>(model);
     {
@@ -144,9 +144,9 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
             });
         }
         // Cost of a run's checks: the deepest contact is watched in every cell.
-        let watch = Some(Watch::new(0.1, 0.3, 0.5));
-        let watching = programs_of::<P>(&Model { watch, ..model.clone() });
-        let mut arrays = Arrays::<f64, P>::new(&Model { watch, ..model.clone() }, &particles);
+        let watch = Some(ContactWatch::new(0.1, 0.3, 0.5));
+        let watching = programs_of::<P>(&GranularModel { watch, ..model.clone() });
+        let mut arrays = ProgramArrays::<f64, P>::new(&GranularModel { watch, ..model.clone() }, &particles);
         warm_up::<P>(&watching, &mut arrays);
         let (memory, lengths) = arrays.memory();
         group.bench_function(format!("chained {}, with the checks", best.name()), |bencher| {

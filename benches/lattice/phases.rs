@@ -6,20 +6,20 @@
 use criterion::{Criterion, SamplingMode, Throughput};
 use std::time::Duration;
 use stripmine_physics::method::lattice_md::assemble;
-use stripmine_physics::method::lattice_md::{Checked, Document};
-use stripmine_physics::method::lattice_md::{Grains, Phase};
+use stripmine_physics::method::lattice_md::{CheckedGranularScene, GranularDocument};
+use stripmine_physics::method::lattice_md::{Phase, SteppedGrains};
 
 /// Steps before the timing: the initial lattice has no contacts.
 pub const EQUILIBRATION: u64 = 400;
 /// Phases with the time to measure each (ms). The rest of a step comes on top, so a short phase gets little.
 const PHASES: [(Phase, u64); 3] = [(Phase::CorrectPredict, 300), (Phase::Index, 50), (Phase::Forces, 1000)];
 
-pub fn advance(gas: &mut Grains, steps: u64) {
+pub fn advance(gas: &mut SteppedGrains, steps: u64) {
     (0..steps).for_each(|_| gas.step().expect("the bench scene runs on"));
 }
 
 /// Scene of a gas with friction, velocity Verlet, in the fast engine.
-pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
+pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> CheckedGranularScene {
     let overrides = [
         format!("particles.count={count}"),
         format!("particles.packing_fraction={packing_fraction}"),
@@ -28,13 +28,13 @@ pub fn scene(packing_fraction: f64, count: usize, precision: &str) -> Checked {
         "search.by=lattice".to_owned(),
         "integrator.kind=\"velocity-verlet\"".to_owned(),
     ];
-    Document::load("bench", &overrides).expect("a preset").check().expect("a good scene")
+    GranularDocument::load("bench", &overrides).expect("a preset").check().expect("a good scene")
 }
 
 fn of_one_gas(criterion: &mut Criterion, packing_fraction: f64, count: usize, precision: &str) {
     let scene = scene(packing_fraction, count, precision);
     // Created on first use: most calls run few of the benches.
-    let mut moving: Option<Grains> = None;
+    let mut moving: Option<SteppedGrains> = None;
     let mut group = criterion.benchmark_group(format!("phases/{precision}/{packing_fraction}/{count}"));
     group.throughput(Throughput::Elements(scene.particles.grain_count() as u64));
     group.sample_size(10).sampling_mode(SamplingMode::Flat);

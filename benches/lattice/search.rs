@@ -9,12 +9,12 @@ use std::hint::black_box;
 use std::time::Duration;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
-use stripmine_kernels::sweep::fast::{Cursor, Finder, Grid, SENTINELS, Sectors};
+use stripmine_kernels::sweep::fast::{CellGrid, Finder, SENTINELS, SearchCursor, Sectors};
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::particles::Particles;
 
 /// Cells and positions in them, in the order of the cells, with sentinels behind.
-fn settled(particles: &Particles, grid: &Grid) -> (Vec<[usize; 2]>, [Vec<f64>; 2]) {
+fn settled(particles: &Particles, grid: &CellGrid) -> (Vec<[usize; 2]>, [Vec<f64>; 2]) {
     let mut discs: Vec<([usize; 2], [f64; 2])> = particles
         .all()
         .iter()
@@ -32,7 +32,7 @@ fn settled(particles: &Particles, grid: &Grid) -> (Vec<[usize; 2]>, [Vec<f64>; 2
 }
 
 fn all<F: Finder<f64, f64>>(finder: &F, places: [&[f64]; 2], found: &mut F::Found) {
-    let (rows, mut cursor) = (finder.rows().count, Cursor::at(0));
+    let (rows, mut cursor) = (finder.rows().count, SearchCursor::at(0));
     while cursor.row() < rows {
         finder.find(places, 0..rows, &mut cursor, found, InstructionSet::best()).expect("available");
         black_box(&*found);
@@ -57,8 +57,9 @@ pub fn search(criterion: &mut Criterion) {
         let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
 
         let domain = model.domain();
-        let grid = Grid::new(domain.corner(), domain.lengths(), domain.periodic(), 1.0, f64::INFINITY, count)
-            .expect("a large box");
+        let grid =
+            CellGrid::new(domain.corner(), domain.lengths(), domain.periodic(), 1.0, f64::INFINITY, count)
+                .expect("a large box");
         let mut sectors = Sectors::new(grid, count, 1.0);
         let (in_sectors, [sx, sy]) = settled(&particles, &grid);
         in_sectors.iter().enumerate().for_each(|(disc, &cell)| sectors.enter(disc, cell));

@@ -5,21 +5,24 @@
 use crate::scenery::dense;
 use criterion::{Criterion, Throughput};
 use std::time::Duration;
-use stripmine_kernels::ledger::Length;
+use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, Model, Part, StepProgram, Watch, execute, programs};
+use stripmine_physics::method::lattice_md::{
+    ContactWatch, GranularModel, Part, ProgramArrays, StepProgram, execute, programs,
+};
 use stripmine_physics::scene::Precision;
 
 /// Programs without the check for lost discs: the last kernel of the Index that runs over discs.
 fn without_check(mut programs: Vec<StepProgram>) -> Vec<StepProgram> {
-    let check = programs.iter().rposition(|step| step.part == Part::Index && step.length == Length::Discs);
+    let check =
+        programs.iter().rposition(|step| step.part == Part::Index && step.length == VectorLength::Discs);
     programs.remove(check.expect("a step has an Index"));
     programs
 }
 
 pub fn step(criterion: &mut Criterion) {
     let (model, particles, _) = dense::<f64>(100_000, true);
-    let watched = Model { watch: Some(Watch::new(0.1, 0.3, 0.5)), ..model.clone() };
+    let watched = GranularModel { watch: Some(ContactWatch::new(0.1, 0.3, 0.5)), ..model.clone() };
     let cases = [
         ("with the checks", &watched, programs(&watched, Precision::F64), Part::ALL),
         ("without the checks", &model, without_check(programs(&model, Precision::F64)), Part::ALL),
@@ -29,7 +32,7 @@ pub fn step(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(particles.len() as u64)).sample_size(20);
     group.measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(500));
     for (name, model, programs, parts) in &cases {
-        let mut arrays = Arrays::<f64, f64>::new(model, &particles);
+        let mut arrays = ProgramArrays::<f64, f64>::new(model, &particles);
         let mut run = |parts: &[Part]| {
             let (memory, lengths) = arrays.memory();
             execute(programs, parts, &memory, lengths, Execution::Chained, InstructionSet::best())

@@ -6,7 +6,7 @@ use crate::isa::OpCounts;
 
 /// Symbolic length of the vectors of a kernel; a scene gives its value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Length {
+pub enum VectorLength {
     /// Discs that move: NP of BP93.
     Grains,
     /// All discs, with those of the walls.
@@ -23,42 +23,42 @@ pub enum Length {
     Pairs,
 }
 
-impl Length {
+impl VectorLength {
     /// Symbol in tables.
     pub const fn symbol(self) -> &'static str {
         match self {
-            Length::Grains => "NP",
-            Length::Discs => "NP + walls",
-            Length::SweptCells => "LMAX + row ends",
-            Length::PaddedCells => "LMAX + halo",
-            Length::HaloCells => "halo",
-            Length::Candidates => "candidates",
-            Length::Pairs => "pairs",
+            VectorLength::Grains => "NP",
+            VectorLength::Discs => "NP + walls",
+            VectorLength::SweptCells => "LMAX + row ends",
+            VectorLength::PaddedCells => "LMAX + halo",
+            VectorLength::HaloCells => "halo",
+            VectorLength::Candidates => "candidates",
+            VectorLength::Pairs => "pairs",
         }
     }
 }
 
 /// Operations of one section of one kernel, once a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct LedgerEntry {
     /// Part of the method.
     pub part: &'static str,
     /// Section of the kernel.
     pub section: &'static str,
     /// Length of the vectors.
-    pub length: Length,
+    pub length: VectorLength,
     /// Operations.
     pub counts: OpCounts,
 }
 
 /// All operations of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Ledger(Vec<Entry>);
+pub struct Ledger(Vec<LedgerEntry>);
 
 impl Ledger {
     /// Enters the tally of a kernel.
-    pub fn enter(&mut self, part: &'static str, length: Length, program: &dyn Runnable) {
-        let entry = |(section, counts)| Entry { part, section, length, counts };
+    pub fn enter(&mut self, part: &'static str, length: VectorLength, program: &dyn Runnable) {
+        let entry = |(section, counts)| LedgerEntry { part, section, length, counts };
         self.0.extend(program.tally().into_iter().map(entry));
     }
 
@@ -67,20 +67,20 @@ impl Ledger {
         &mut self,
         part: &'static str,
         section: &'static str,
-        length: Length,
+        length: VectorLength,
         counts: OpCounts,
     ) {
-        self.0.push(Entry { part, section, length, counts });
+        self.0.push(LedgerEntry { part, section, length, counts });
     }
 
     /// Entries in the order of the step.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[LedgerEntry] {
         &self.0
     }
 
     /// Parts and their vector lengths in the order of the step, each with its operations.
-    pub fn parts(&self) -> Vec<(&'static str, Length, OpCounts)> {
-        let mut parts: Vec<(&'static str, Length, OpCounts)> = Vec::new();
+    pub fn parts(&self) -> Vec<(&'static str, VectorLength, OpCounts)> {
+        let mut parts: Vec<(&'static str, VectorLength, OpCounts)> = Vec::new();
         for entry in &self.0 {
             match parts.iter_mut().find(|(part, length, _)| (*part, *length) == (entry.part, entry.length)) {
                 Some((.., counts)) => counts.add(&entry.counts),

@@ -2,9 +2,9 @@
 
 use crate::backend::tape::Outlines;
 use crate::backend::{
-    GROUP, InstructionSet, Line, Precision, Registers, Scalar, Strip, Tape, Task, dispatch,
+    GROUP, InstructionSet, ListingLine, Precision, RegisterTask, Registers, Scalar, Strip, Tape, dispatch,
 };
-use crate::isa::{Footprint, Memory, OpCounts, ProgramError, Storage, Text};
+use crate::isa::{Footprint, Kernel, Memory, OpCounts, ProgramError, Storage};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 
@@ -21,13 +21,13 @@ pub enum Execution {
 
 /// A kernel with its tape: the same operations are counted, listed and executed.
 #[derive(Clone, Debug)]
-pub struct Program<T: Text> {
+pub struct Program<T: Kernel> {
     text: T,
     tape: Tape<T::Lane>,
     footprint: Footprint,
 }
 
-impl<T: Text> Program<T> {
+impl<T: Kernel> Program<T> {
     /// Records the kernel.
     ///
     /// # Panics
@@ -55,7 +55,7 @@ impl<T: Text> Program<T> {
     }
 }
 
-impl<T: Text> Program<T>
+impl<T: Kernel> Program<T>
 where
     T::Lane: Precision,
 {
@@ -76,12 +76,12 @@ where
             Execution::Strip(0) => Err(ProgramError::EmptyStrip),
             Execution::Eager => T::Lane::interpret(&self.tape, memory, range.clone(), range.len(), set),
             Execution::Strip(length) => T::Lane::interpret(&self.tape, memory, range, length, set),
-            Execution::Chained => dispatch(set, Compiled { text: &self.text, memory, range }),
+            Execution::Chained => dispatch(set, ChainedRun { text: &self.text, memory, range }),
         }
     }
 }
 
-impl<T: Text + Sync> Program<T>
+impl<T: Kernel + Sync> Program<T>
 where
     T::Lane: Precision,
 {
@@ -107,12 +107,12 @@ where
 }
 
 /// Function that runs a kernel over one band.
-type BandOf<'r> = dyn Fn(&Memory<'_>, Range<usize>) -> Result<(), ProgramError> + Sync + 'r;
+type BandRun<'r> = dyn Fn(&Memory<'_>, Range<usize>) -> Result<(), ProgramError> + Sync + 'r;
 
 /// Runs a kernel over bands of a range, each with a part of the memory. The kernel is called through a pointer, so that this
 /// function is compiled once. The memory was admitted, and the kernel is elementwise.
-fn in_bands(memory: &Memory<'_>, range: Range<usize>, run: &BandOf<'_>) -> Result<(), ProgramError> {
-    let shared = Shared(memory);
+fn in_bands(memory: &Memory<'_>, range: Range<usize>, run: &BandRun<'_>) -> Result<(), ProgramError> {
+    let shared = SharedMemory(memory);
     let counters = on_threads(pieces(range, BAND), |band| {
         // SAFETY: bands do not overlap. The kernel writes only the own element, and reads at shifts only arrays that it does not
         // write.
@@ -128,12 +128,12 @@ fn in_bands(memory: &Memory<'_>, range: Range<usize>, run: &BandOf<'_>) -> Resul
 const BAND: usize = 256 * GROUP;
 
 /// A memory whose parts several threads use.
-struct Shared<'r, 'a>(&'r Memory<'a>);
+struct SharedMemory<'r, 'a>(&'r Memory<'a>);
 
 // SAFETY: `part` copies the columns and touches no counter; the caller is responsible for their use by the threads.
-unsafe impl Sync for Shared<'_, '_> {}
+unsafe impl Sync for SharedMemory<'_, '_> {}
 
-impl Shared<'_, '_> {
+impl SharedMemory<'_, '_> {
     /// Part of the memory, see [`Memory::part`].
     ///
     /// # Safety
@@ -177,13 +177,13 @@ pub trait Runnable: Send + Sync {
     fn listing(&self) -> String;
 
     /// Vector instructions in words.
-    fn lines(&self) -> Vec<Line>;
+    fn lines(&self) -> Vec<ListingLine>;
 
     /// Outlines of the vector instructions and of the passes that execute them, for a timing model.
     fn outlines(&self) -> Outlines;
 }
 
-impl<T: Text + Send + Sync> Runnable for Program<T>
+impl<T: Kernel + Send + Sync> Runnable for Program<T>
 where
     T::Lane: Precision,
 {
@@ -219,7 +219,7 @@ where
         self.tape.listing().to_string()
     }
 
-    fn lines(&self) -> Vec<Line> {
+    fn lines(&self) -> Vec<ListingLine> {
         self.tape.lines()
     }
 
@@ -229,13 +229,13 @@ where
 }
 
 /// An admitted run of a kernel compiled for registers.
-struct Compiled<'r, T> {
+struct ChainedRun<'r, T> {
     text: &'r T,
     memory: &'r Memory<'r>,
     range: Range<usize>,
 }
 
-impl<T: Text> Task<T::Lane> for Compiled<'_, T>
+impl<T: Kernel> RegisterTask<T::Lane> for ChainedRun<'_, T>
 where
     T::Lane: Precision,
 {
@@ -251,7 +251,7 @@ where
     }
 }
 
-impl<T: Text> Compiled<'_, T>
+impl<T: Kernel> ChainedRun<'_, T>
 where
     T::Lane: Precision,
 {

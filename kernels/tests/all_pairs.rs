@@ -6,16 +6,18 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
-use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, BANDS, Bodies, Manner, padded, padding};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
+use stripmine_kernels::sweep::all_pairs::{
+    AllPairs, AllPairsOptions, Arithmetic, BANDS, BodyColumns, padded, padding,
+};
 
 fn never() -> bool {
     false
 }
 
 /// Options that observe everything and never stop.
-fn manner(arithmetic: Arithmetic, set: InstructionSet) -> Manner<'static> {
-    Manner { observed: true, arithmetic, set, interrupted: &never }
+fn manner(arithmetic: Arithmetic, set: InstructionSet) -> AllPairsOptions<'static> {
+    AllPairsOptions { observed: true, arithmetic, set, interrupted: &never }
 }
 
 /// Bodies at random positions in a cube, with velocities and masses; padding behind them.
@@ -30,7 +32,7 @@ struct System<P> {
 
 impl<P: Precision> System<P> {
     fn random(count: usize, seed: u64) -> Self {
-        let mut random = Stream::new(seed, Purpose::Test, 0);
+        let mut random = Stream::new(seed, RandomPurpose::Test, 0);
         let entries = padded(count);
         let mut column = |from: f64, to: f64| -> Vec<P> {
             let bodies = (0..count).map(|_| P::from_f64(random.random_range(from..to)));
@@ -56,7 +58,7 @@ impl<P: Precision> System<P> {
         arithmetic: Arithmetic,
         set: InstructionSet,
     ) -> ([Vec<P>; SUMS], [f64; 2]) {
-        let bodies = Bodies {
+        let bodies = BodyColumns {
             position: self.position.each_ref().map(Vec::as_slice),
             rest: self.rest.each_ref().map(Vec::as_slice),
             velocity: self.velocity.each_ref().map(Vec::as_slice),
@@ -280,7 +282,7 @@ fn too_short_columns_are_rejected() {
     let mut sums: [Vec<f64>; 6] = std::array::from_fn(|_| zeros.clone());
     let mut sweep = |position: &[f64], velocity: &[f64]| {
         let bodies =
-            Bodies { position: [position; 3], rest: [&[]; 3], velocity: [velocity; 3], mass: &zeros };
+            BodyColumns { position: [position; 3], rest: [&[]; 3], velocity: [velocity; 3], mass: &zeros };
         let into = sums.each_mut().map(Vec::as_mut_slice);
         AllPairs::<f64, 6>::new(20).sweep(
             &law,
@@ -293,7 +295,7 @@ fn too_short_columns_are_rejected() {
     assert!(matches!(sweep(&zeros, &[]), Err(ProgramError::TooShort { .. })));
     assert!(sweep(&zeros, &zeros).is_ok());
     let mut three: [Vec<f64>; 3] = std::array::from_fn(|_| zeros.clone());
-    let bodies = Bodies { position: [&zeros; 3], rest: [&[]; 3], velocity: [&zeros; 3], mass: &zeros };
+    let bodies = BodyColumns { position: [&zeros; 3], rest: [&[]; 3], velocity: [&zeros; 3], mass: &zeros };
     let into = three.each_mut().map(Vec::as_mut_slice);
     let manner = manner(Arithmetic::Exact, InstructionSet::Scalar);
     let rates = AllPairs::<f64, 3>::new(20).sweep(&law, &bodies, into, &manner);
@@ -315,10 +317,12 @@ fn a_sweep_stops_between_groups() {
         for (most, stops) in [(0, true), (1, true), (groups - 1, true), (groups, false)] {
             let asked = AtomicUsize::new(0);
             let interrupted = || asked.fetch_add(1, Ordering::Relaxed) >= most;
-            let manner =
-                Manner { interrupted: &interrupted, ..manner(Arithmetic::Exact, InstructionSet::best()) };
+            let manner = AllPairsOptions {
+                interrupted: &interrupted,
+                ..manner(Arithmetic::Exact, InstructionSet::best())
+            };
             let mut sums: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; system.mass.len()]);
-            let bodies = Bodies {
+            let bodies = BodyColumns {
                 position: system.position.each_ref().map(Vec::as_slice),
                 rest: [&[]; 3],
                 velocity: [&[]; 3],

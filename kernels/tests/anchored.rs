@@ -4,11 +4,11 @@
 mod support;
 
 use rand::RngExt;
-use stripmine_kernels::isa::{Array, Counter, Memory, Slot};
+use stripmine_kernels::isa::{Array, LaneCounter, Memory, Slot};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::lattice::cells::{Enter, STRAYS};
-use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
+use stripmine_kernels::sweep::lattice::cells::{EnterDiscs, STRAYS};
+use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const DISCS: usize = 300;
@@ -22,7 +22,12 @@ struct Discs {
     strays: u64,
 }
 
-fn entered(start: &Discs, shape: LatticeShape, frame: Frame, how: (Execution, InstructionSet)) -> Discs {
+fn entered(
+    start: &Discs,
+    shape: LatticeShape,
+    frame: LatticeFrame,
+    how: (Execution, InstructionSet),
+) -> Discs {
     let mut discs = start.clone();
     let mut index = vec![0; shape.padded()];
     let Discs { cell, place: [x, y], on_lattice: [lattice_x, lattice_y], strays } = &mut discs;
@@ -33,24 +38,26 @@ fn entered(start: &Discs, shape: LatticeShape, frame: Frame, how: (Execution, In
     memory.bind_write(Slot::new(Array::Y0), y);
     memory.bind_write(Slot::new(Array::DiscX), lattice_x);
     memory.bind_write(Slot::new(Array::DiscY), lattice_y);
-    Program::new(Enter::<f32, f32>::anchored(shape, frame)).run(&memory, 0..DISCS, how.0, how.1).unwrap();
-    let Counter(number) = STRAYS;
-    *strays = memory.counted(Counter(number));
+    Program::new(EnterDiscs::<f32, f32>::anchored(shape, frame))
+        .run(&memory, 0..DISCS, how.0, how.1)
+        .unwrap();
+    let LaneCounter(number) = STRAYS;
+    *strays = memory.counted(LaneCounter(number));
     discs
 }
 
 #[test]
 fn discs_are_indexed_from_their_last_cells() {
     // A box far from the origin, where single precision could not distinguish cells.
-    let frame = Frame { origin: [-3e7, 5e8], edge: [0.7, 0.9] };
+    let frame = LatticeFrame { origin: [-3e7, 5e8], edge: [0.7, 0.9] };
     for (periodic, half_width) in [([true, true], 2), ([true, false], 3), ([false, false], 2)] {
         let (columns, rows) = (23_usize, 11_usize);
         let mask = Mask::square(half_width);
         let shape = LatticeShape::new(columns, rows, &mask, periodic).unwrap();
-        let mut random = Stream::new(5, Purpose::Test, half_width);
+        let mut random = Stream::new(5, RandomPurpose::Test, half_width);
         let mut draw = |most: f64| (most * random.random::<f64>()) as usize;
         let from: Vec<[usize; 2]> = (0..DISCS).map(|_| [draw(columns as f64), draw(rows as f64)]).collect();
-        let mut random = Stream::new(6, Purpose::Test, half_width);
+        let mut random = Stream::new(6, RandomPurpose::Test, half_width);
         // A third of the discs stays in its cell, the others move up to three cells away.
         let place: [Vec<f32>; 2] = [0, 1].map(|axis| {
             let reach = |disc: usize| if disc.is_multiple_of(3) { 0.49 } else { 3.0 };

@@ -5,15 +5,15 @@ mod support;
 
 use stripmine_kernels::isa::Element;
 use stripmine_kernels::law::granular::{Contact, ContactArm, Granular};
-use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::forces::Forces;
-use stripmine_kernels::sweep::neighbor_list::{CellOffsets, Discs, Lists, walk};
-use stripmine_kernels::sweep::pair::{Body, Pair};
+use stripmine_kernels::sweep::neighbor_list::{CellOffsets, ListDiscs, NeighbourLists, walk};
+use stripmine_kernels::sweep::pair::{Pair, PairBody};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 use support::{CONTACT, Case, System, all_ways, varying};
 
-const ASKED: Asked = Asked { watched: None, dissipation: true, energy: true };
+const ASKED: ObservationRequest = ObservationRequest { watched: None, dissipation: true, energy: true };
 
 /// Discs at random positions, every fifth of them fixed.
 fn some_fixed(case: &Case) -> System<f64, f64> {
@@ -38,7 +38,7 @@ struct Alone {
 /// neither is fixed.
 fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> Alone {
     let sides = [system.shape.columns(), system.shape.rows()];
-    let body = |disc: usize| Body {
+    let body = |disc: usize| PairBody {
         position: [0, 1].map(|axis| system.state[axis][0][disc]),
         velocity: [0, 1].map(|axis| system.velocity[axis][disc]),
         omega: system.velocity[2][disc],
@@ -111,9 +111,9 @@ fn by_lists<L: Law<2>>(start: &System<f64, f64>, case: &Case, law: &L) -> [f64; 
     system.index(case, law, (Execution::Chained, InstructionSet::best()));
     let mask = Mask::square(case.half_width);
     let offsets = CellOffsets::new(system.shape, system.frame, &mask, true);
-    let lists = Lists::by_all_pairs(system.discs, |i, _| system.lattice_inverse_mass[i] != 0.0);
+    let lists = NeighbourLists::by_all_pairs(system.discs, |i, _| system.lattice_inverse_mass[i] != 0.0);
     let [vx, vy, omega] = &system.velocity;
-    let discs = Discs {
+    let discs = ListDiscs {
         position: [&system.on_lattice[0], &system.on_lattice[1]],
         velocity: [vx, vy],
         omega,
@@ -167,17 +167,18 @@ fn unrequested_observations_are_not_recorded() {
     let case = Case::new(9, 7);
     let system = System::<f64, f64>::random(&case);
     let contact = Contact { arm: ContactArm::Overlap, ..CONTACT };
-    let sections = |asked: Asked| {
+    let sections = |asked: ObservationRequest| {
         let law: Granular<true, false> = varying(contact);
         let mask = Mask::square(case.half_width);
         let forces = Forces::<f64, _>::new(law, &mask, system.shape, system.frame, case.coordinates);
         Program::new(forces.asked(asked)).tape().tally()
     };
-    let total = |asked: Asked, name: &str| {
+    let total = |asked: ObservationRequest, name: &str| {
         let of_name = sections(asked).into_iter().filter(|(section, _)| *section == name);
         of_name.map(|(_, counts)| counts.total()).sum::<u64>()
     };
-    let (unasked, energy) = (Asked::default(), Asked { energy: true, ..Asked::default() });
+    let (unasked, energy) =
+        (ObservationRequest::default(), ObservationRequest { energy: true, ..ObservationRequest::default() });
     assert_eq!(total(unasked, "energy"), 0);
     assert!(total(energy, "energy") > 0);
     for section in ["own disc", "distance", "contact", "normal force", "shear force"] {

@@ -9,15 +9,15 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
-use stripmine_kernels::law::{Axis, Law, Sum};
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::law::{Axis, Law, ParticleSum};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::{Execution, sweep::lattice::Coordinates};
 use support::{CONTACT, Case, System, equal, varying};
 
 /// The numbers from 0 in a random order.
 fn shuffled(count: usize, seed: u64) -> Vec<u32> {
     let mut order: Vec<u32> = (0..count as u32).collect();
-    order.shuffle(&mut Stream::new(seed, Purpose::Test, 1));
+    order.shuffle(&mut Stream::new(seed, RandomPurpose::Test, 1));
     order
 }
 
@@ -106,7 +106,7 @@ fn fast_forces_sum_to_zero() {
     let system = System::<f64, f64>::random(&case);
     let order: Vec<u32> = (0..system.discs as u32).collect();
     let (forces, _) = system.fast_forces(&varying::<true>(CONTACT), &order, InstructionSet::best()).unwrap();
-    for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
+    for sum in [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)] {
         let total: f64 = forces.iter().map(|force| force[sum.column::<2>()]).sum();
         let magnitude: f64 = forces.iter().map(|force| force[sum.column::<2>()].abs()).sum();
         assert!(magnitude > 100.0 && total.abs() < 1e-13 * magnitude, "{total:e} of {magnitude:e}");

@@ -1,7 +1,7 @@
 //! Gear's schemes: orders, stability limits, and exact solutions.
 
 use stripmine_kernels::integrator::Inertia;
-use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE, coefficients};
+use stripmine_kernels::integrator::gear::{Acceleration, GearCorrector, GearPredictor, STATE, coefficients};
 use stripmine_kernels::isa::{Array, Memory, Slot};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
@@ -58,9 +58,9 @@ impl Discs {
         force: impl Fn(usize, usize, f64, f64) -> f64,
     ) {
         let (count, set, execution) = (self.count, self.set, Execution::Chained);
-        let predictor = Program::new(Predictor::<f64, f64, VALUES, FREEDOMS>::new(self.dt));
+        let predictor = Program::new(GearPredictor::<f64, f64, VALUES, FREEDOMS>::new(self.dt));
         let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 1.0 };
-        let corrector = Program::new(Corrector::<f64, f64, VALUES, FREEDOMS>::new(
+        let corrector = Program::new(GearCorrector::<f64, f64, VALUES, FREEDOMS>::new(
             self.dt,
             acceleration,
             inertia,
@@ -288,7 +288,7 @@ fn free_fall_is_the_exact_parabola() {
 fn gravity_costs_one_sum_a_component() {
     let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 1.0 };
     let sums = |gravity: [f64; 2]| {
-        let text = Corrector::<f64, f64, 4, 2>::new(1e-3, Acceleration::OfVelocities, inertia, gravity);
+        let text = GearCorrector::<f64, f64, 4, 2>::new(1e-3, Acceleration::OfVelocities, inertia, gravity);
         let tally = Program::new(text).tape().tally();
         tally.iter().map(|(_, counts)| counts.total()).sum::<u64>()
     };
@@ -303,8 +303,12 @@ fn a_disc_in_no_cell_feels_no_force() {
     discs.cell = vec![5, 0, 4, 1, 2];
     discs.force[0] = vec![1.0, 2.0, 3.0, 4.0, 5.0];
     let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 1.0 };
-    let corrector =
-        Program::new(Corrector::<f64, f64, 4, 2>::new(1e-2, Acceleration::OfPositions, inertia, [0.0, -2.0]));
+    let corrector = Program::new(GearCorrector::<f64, f64, 4, 2>::new(
+        1e-2,
+        Acceleration::OfPositions,
+        inertia,
+        [0.0, -2.0],
+    ));
     corrector.run(&discs.memory(), 0..5, Execution::Chained, InstructionSet::best()).unwrap();
     let found =
         |freedom: usize| discs.state[freedom][2].iter().map(|q| q / (0.5 * 1e-2 * 1e-2)).collect::<Vec<_>>();

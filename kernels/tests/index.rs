@@ -4,9 +4,9 @@ mod support;
 
 use rand::RngExt;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame};
-use stripmine_kernels::sweep::pair::Body;
+use stripmine_kernels::noise::{RandomPurpose, Stream};
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame};
+use stripmine_kernels::sweep::pair::PairBody;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{Case, System, equal};
 
@@ -25,7 +25,7 @@ struct Cells {
 }
 
 /// The Index by plain arithmetic: wrapped once, divided, rounded down.
-fn naive_cells(places: &[[f64; 2]], frame: Frame, case: &Case) -> Cells {
+fn naive_cells(places: &[[f64; 2]], frame: LatticeFrame, case: &Case) -> Cells {
     let cells = [case.columns, case.rows];
     let halo = case.half_width as usize;
     let stride = case.columns + 2 * halo;
@@ -64,8 +64,8 @@ fn naive_cells(places: &[[f64; 2]], frame: Frame, case: &Case) -> Cells {
 }
 
 /// Indexes discs at `places` with every execution and returns the first of the equal results.
-fn indexed<S: Precision>(case: &Case, frame: Frame, places: &[[f64; 2]]) -> System<S, f64> {
-    let discs: Vec<_> = places.iter().map(|&[x, y]| Body::at(x, y)).collect();
+fn indexed<S: Precision>(case: &Case, frame: LatticeFrame, places: &[[f64; 2]]) -> System<S, f64> {
+    let discs: Vec<_> = places.iter().map(|&[x, y]| PairBody::at(x, y)).collect();
     let law = equal::<false>(case.contact);
     let [first, second] = ways().map(|how| {
         let mut system = System::<S, f64>::placed(case, frame, &discs);
@@ -103,8 +103,8 @@ fn places_on_the_lattice<S>(system: &System<S, f64>, case: &Case) -> Vec<[f64; 2
 
 /// Compares cells, strays, conflicts, Index and coordinates for random positions up to most of a period outside.
 fn index_agrees<S: Precision>(case: &Case) {
-    let mut random = Stream::new(case.seed, Purpose::Test, 1);
-    let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
+    let mut random = Stream::new(case.seed, RandomPurpose::Test, 1);
+    let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
     let cells = [case.columns, case.rows];
     let mut draw = |axis: usize| {
         let there = (2.8 * random.random::<f64>() - 0.9) * cells[axis] as f64 * frame.edge[axis];
@@ -152,8 +152,8 @@ fn the_index_matches_plain_arithmetic() {
 fn lattice_coordinates_match_disc_positions() {
     for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
         let case = Case { coordinates, ..Case::new(13, 9) };
-        let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
-        let mut random = Stream::new(7, Purpose::Test, 2);
+        let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [1.1, 1.3] };
+        let mut random = Stream::new(7, RandomPurpose::Test, 2);
         let places: Vec<[f64; 2]> = (0..100)
             .map(|_| [-3.0 + 14.3 * random.random::<f64>(), 2.0 + 11.7 * random.random::<f64>()])
             .collect();
@@ -174,7 +174,7 @@ fn lattice_coordinates_match_disc_positions() {
 /// Index entry is missing) as conflicts; no other disc is affected.
 #[test]
 fn strays_belong_to_no_cell_and_are_counted() {
-    let frame = Frame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
+    let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
     let [width, height] = [15.0, 10.0]; // 10 × 8 cells
     let home = [1.0, 5.0];
     let stray_anywhere = [
@@ -212,7 +212,7 @@ fn strays_belong_to_no_cell_and_are_counted() {
 #[test]
 fn discs_that_share_a_cell_are_counted() {
     let case = Case::new(10, 8);
-    let frame = Frame { origin: [0.0, 0.0], edge: [1.0, 1.0] };
+    let frame = LatticeFrame { origin: [0.0, 0.0], edge: [1.0, 1.0] };
     let places = [[3.5, 4.5], [7.5, 1.5], [3.1, 4.9], [0.5, 0.5], [3.9, 4.1], [7.9, 1.9]];
     let system = indexed::<f64>(&case, frame, &places);
     assert_eq!((system.strays, system.conflicts), (0, 3));
@@ -231,7 +231,7 @@ fn discs_that_share_a_cell_are_counted() {
 /// to the last cell of a closed lattice and to the first of a periodic one.
 #[test]
 fn border_discs_belong_to_the_upper_cell() {
-    let frame = Frame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
+    let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [1.5, 1.25] };
     for periodic in [[true, true], [false, false]] {
         for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
             let case = Case { periodic, coordinates, ..Case::new(10, 8) };
@@ -263,7 +263,7 @@ fn border_discs_belong_to_the_upper_cell() {
 /// On borders that no double represents, the disc is in one of the two cells, and its position is unchanged.
 #[test]
 fn rounded_borders_assign_a_neighbouring_cell() {
-    let frame = Frame { origin: [-3.1, 2.7], edge: [1.1, 0.7] };
+    let frame = LatticeFrame { origin: [-3.1, 2.7], edge: [1.1, 0.7] };
     let case = Case::new(23, 19);
     for column in 1..23 {
         for row in 1..19 {
@@ -282,7 +282,7 @@ fn rounded_borders_assign_a_neighbouring_cell() {
 /// A disc so slightly below a periodic side that adding a period rounds to exactly the far side stays inside.
 #[test]
 fn positions_rounded_to_the_period_stay_inside() {
-    let frame = Frame { origin: [0.0, 0.0], edge: [1.5, 1.25] };
+    let frame = LatticeFrame { origin: [0.0, 0.0], edge: [1.5, 1.25] };
     let case = Case::new(10, 8);
     for little in [f64::MIN_POSITIVE, 1e-300, 1e-30, 1e-17] {
         assert_eq!(-little + 15.0, 15.0, "the case does not round to the period");
@@ -295,7 +295,7 @@ fn positions_rounded_to_the_period_stay_inside() {
         assert!(corner.iter().any(|&(c, r)| at == system.shape.position(c, r)), "cell {at}");
     }
     // In single precision the stored coordinate may be the far side itself; the wrap of the next step corrects it.
-    let frame = Frame { origin: [0.0, 0.0], edge: [1.1, 1.3] };
+    let frame = LatticeFrame { origin: [0.0, 0.0], edge: [1.1, 1.3] };
     let mut system = indexed::<f32>(&case, frame, &[[-1e-9, -1e-9]]);
     for _ in 0..3 {
         assert_eq!((system.strays, system.conflicts), (0, 0));
@@ -310,13 +310,13 @@ fn next_to(side: f64) -> [f64; 3] {
 
 /// Discs next to the periodic sides of random lattices that become strays.
 fn strays_at_periodic_sides(origin: impl Fn(&mut Stream) -> f64) -> Vec<String> {
-    let mut random = Stream::new(11, Purpose::Test, 3);
+    let mut random = Stream::new(11, RandomPurpose::Test, 3);
     let mut found = vec![];
     for _ in 0..300 {
         let columns = 5 + (40.0 * random.random::<f64>()) as usize;
         let edge = 0.5 + random.random::<f64>();
         let low = origin(&mut random);
-        let frame = Frame { origin: [low, 0.0], edge: [edge, 1.0] };
+        let frame = LatticeFrame { origin: [low, 0.0], edge: [edge, 1.0] };
         let case = Case::new(columns, 6);
         for x in next_to(low).into_iter().chain(next_to(low + columns as f64 * edge)) {
             let system = indexed::<f64>(&case, frame, &[[x, 3.5]]);
@@ -346,7 +346,7 @@ fn lattices_at_the_origin_have_no_strays() {
 #[test]
 fn discs_inside_closed_sides_are_no_strays() {
     let case = Case { periodic: [false, false], ..Case::new(17, 6) };
-    let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.25] };
+    let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [1.1, 1.25] };
     let x = (-3.0 + 17.0 * 1.1f64).next_down();
     assert_eq!(indexed::<f64>(&case, frame, &[[x, 4.0]]).strays, 0, "x = {x:?}");
 }

@@ -9,7 +9,7 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::CutOff;
-use stripmine_kernels::law::{Axis, Env, Field, Law, Stated, Sum, check};
+use stripmine_kernels::law::{Axis, Env, Law, ParticleField, ParticleSum, StatedEnv, check};
 use stripmine_kernels::sweep::pair::Pair;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, random_pairs, varying};
@@ -25,8 +25,9 @@ struct Forgetful {
 
 impl Law<2> for Forgetful {
     type Own<V: Copy> = [V; 2];
-    const FIELDS: &'static [Field] = &[Field::Velocity(Axis::X), Field::Velocity(Axis::Y)];
-    const SUMS: &'static [Sum] = &[Sum::Force(Axis::X), Sum::Force(Axis::Y)];
+    const FIELDS: &'static [ParticleField] =
+        &[ParticleField::Velocity(Axis::X), ParticleField::Velocity(Axis::Y)];
+    const SUMS: &'static [ParticleSum] = &[ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)];
 
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
         env.own_position()
@@ -34,13 +35,13 @@ impl Law<2> for Forgetful {
 
     fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
         let [dx, _] = env.displacement(*own, place);
-        env.own_add(Sum::Force(Axis::X), dx);
+        env.own_add(ParticleSum::Force(Axis::X), dx);
         if self.hides && !self.tried.swap(true, Ordering::Relaxed) {
             return;
         }
         match self.torque {
-            true => env.own_add(Sum::Torque, dx),
-            false => env.own_add(Sum::Force(Axis::Y), dx * env.partner(Field::Radius, place)),
+            true => env.own_add(ParticleSum::Torque, dx),
+            false => env.own_add(ParticleSum::Force(Axis::Y), dx * env.partner(ParticleField::Radius, place)),
         }
     }
 }
@@ -94,24 +95,28 @@ struct Dashpot {
 
 impl Law<3> for Dashpot {
     type Own<V: Copy> = [V; 3];
-    const FIELDS: &'static [Field] =
-        &[Field::Velocity(Axis::X), Field::Velocity(Axis::Y), Field::Velocity(Axis::Z)];
-    const SUMS: &'static [Sum] = &[Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Force(Axis::Z)];
+    const FIELDS: &'static [ParticleField] = &[
+        ParticleField::Velocity(Axis::X),
+        ParticleField::Velocity(Axis::Y),
+        ParticleField::Velocity(Axis::Z),
+    ];
+    const SUMS: &'static [ParticleSum] =
+        &[ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y), ParticleSum::Force(Axis::Z)];
 
     fn own<E: Env<3>>(&self, env: E) -> [E::V; 3] {
-        Axis::ALL.map(|axis| env.own(Field::Velocity(axis)))
+        Axis::ALL.map(|axis| env.own(ParticleField::Velocity(axis)))
     }
 
     fn pair<E: Env<3>>(&self, env: E, place: E::Place, own: &[E::V; 3]) {
         for axis in Axis::ALL {
-            let force = env.partner(Field::Velocity(axis), place) - own[axis as usize];
-            env.own_add(Sum::Force(axis), force);
+            let force = env.partner(ParticleField::Velocity(axis), place) - own[axis as usize];
+            env.own_add(ParticleSum::Force(axis), force);
             if E::BOTH_PARTNERS {
-                env.partner_sub(Sum::Force(axis), place, force);
+                env.partner_sub(ParticleSum::Force(axis), place, force);
             }
         }
         if self.turns {
-            env.own_add(Sum::Torque, env.uniform(1.0));
+            env.own_add(ParticleSum::Torque, env.uniform(1.0));
         }
     }
 }
@@ -123,9 +128,9 @@ struct InSpace {
 }
 
 impl InSpace {
-    fn velocity(&self, particle: usize, field: Field) -> f64 {
+    fn velocity(&self, particle: usize, field: ParticleField) -> f64 {
         match field {
-            Field::Velocity(axis) => self.velocity[particle][axis as usize],
+            ParticleField::Velocity(axis) => self.velocity[particle][axis as usize],
             _ => panic!("particles in space have velocities only, not {}", field.name()),
         }
     }
@@ -139,13 +144,13 @@ impl Env<3> for &InSpace {
     fn own_position(self) -> [f64; 3] {
         [0.0; 3]
     }
-    fn own(self, field: Field) -> f64 {
+    fn own(self, field: ParticleField) -> f64 {
         self.velocity(0, field)
     }
     fn displacement(self, _: [f64; 3], (): ()) -> [f64; 3] {
         [1.0; 3]
     }
-    fn partner(self, field: Field, (): ()) -> f64 {
+    fn partner(self, field: ParticleField, (): ()) -> f64 {
         self.velocity(1, field)
     }
     fn uniform(self, value: f64) -> f64 {
@@ -154,10 +159,10 @@ impl Env<3> for &InSpace {
     fn none(self, predicate: bool) -> bool {
         !predicate
     }
-    fn own_add(self, sum: Sum, value: f64) {
+    fn own_add(self, sum: ParticleSum, value: f64) {
         self.sums.borrow_mut()[0][sum.column::<3>()] += value;
     }
-    fn partner_sub(self, sum: Sum, (): (), value: f64) {
+    fn partner_sub(self, sum: ParticleSum, (): (), value: f64) {
         self.sums.borrow_mut()[1][sum.column::<3>()] -= value;
     }
     fn watches(self) -> bool {
@@ -180,7 +185,7 @@ impl Env<3> for &InSpace {
 fn laws_in_space_use_z_without_torque() {
     let meet = |law: Dashpot| {
         let pair = InSpace { velocity: [[1.0, 2.0, 3.0], [5.0, 4.0, -3.0]], sums: RefCell::default() };
-        let env = Stated::new(&pair, &law);
+        let env = StatedEnv::new(&pair, &law);
         let own = law.own(env);
         law.pair(env, (), &own);
         pair.sums.into_inner()
@@ -200,13 +205,14 @@ fn planar_laws_cannot_read_z() {
     struct Lifting;
     impl Law<2> for Lifting {
         type Own<V: Copy> = V;
-        const FIELDS: &'static [Field] = &[Field::Velocity(Axis::X), Field::Velocity(Axis::Y)];
-        const SUMS: &'static [Sum] = &[Sum::Force(Axis::X)];
+        const FIELDS: &'static [ParticleField] =
+            &[ParticleField::Velocity(Axis::X), ParticleField::Velocity(Axis::Y)];
+        const SUMS: &'static [ParticleSum] = &[ParticleSum::Force(Axis::X)];
         fn own<E: Env<2>>(&self, env: E) -> E::V {
-            env.own(Field::Velocity(Axis::Z))
+            env.own(ParticleField::Velocity(Axis::Z))
         }
         fn pair<E: Env<2>>(&self, env: E, _: E::Place, own: &E::V) {
-            env.own_add(Sum::Force(Axis::X), *own);
+            env.own_add(ParticleSum::Force(Axis::X), *own);
         }
     }
     let refusal = ProgramError::Unstated("the velocity along z");
@@ -217,12 +223,12 @@ fn planar_laws_cannot_read_z() {
 /// The lists contain every field and sum of their dimensions, each in one column.
 #[test]
 fn planar_lists_omit_z() {
-    let planar: Vec<Field> = Field::ALL.into_iter().filter(|field| field.is_in(2)).collect();
-    assert_eq!(planar, Field::PLANAR);
-    let planar: Vec<Sum> = Sum::ALL.into_iter().filter(|sum| sum.is_in(2)).collect();
-    assert_eq!(planar, Sum::PLANAR);
-    assert_eq!(Sum::PLANAR.map(Sum::column::<2>), [0, 1, 2]);
-    let spatial = Sum::ALL.into_iter().filter(|sum| sum.is_in(3)).map(Sum::column::<3>);
+    let planar: Vec<ParticleField> = ParticleField::ALL.into_iter().filter(|field| field.is_in(2)).collect();
+    assert_eq!(planar, ParticleField::PLANAR);
+    let planar: Vec<ParticleSum> = ParticleSum::ALL.into_iter().filter(|sum| sum.is_in(2)).collect();
+    assert_eq!(planar, ParticleSum::PLANAR);
+    assert_eq!(ParticleSum::PLANAR.map(ParticleSum::column::<2>), [0, 1, 2]);
+    let spatial = ParticleSum::ALL.into_iter().filter(|sum| sum.is_in(3)).map(ParticleSum::column::<3>);
     assert_eq!(spatial.collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
 }
 

@@ -1,7 +1,7 @@
 //! Kernels that cannot run are rejected before anything is written, with the reason.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use stripmine_kernels::isa::{Array, Counter, Machine, Memory, ProgramError, Slot, Text, Vector};
+use stripmine_kernels::isa::{Array, Kernel, LaneCounter, Machine, Memory, ProgramError, Slot, Vector};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const X: Slot<f64> = Slot::new(Array::X);
@@ -9,7 +9,7 @@ const FX: Slot<f64> = Slot::new(Array::Fx);
 const FY: Slot<f64> = Slot::new(Array::Fy);
 const CELL: Slot<u32> = Slot::new(Array::DiscCell);
 const INDEX: Slot<u32> = Slot::new(Array::Index);
-const COUNTED: Counter = Counter(2);
+const COUNTED: LaneCounter = LaneCounter(2);
 
 const BEST: fn() -> InstructionSet = InstructionSet::best;
 
@@ -25,7 +25,7 @@ fn ways() -> impl Iterator<Item = (Execution, InstructionSet)> {
 struct Touch;
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl Text for Touch {
+unsafe impl Kernel for Touch {
     type Lane = f64;
 
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
@@ -58,7 +58,7 @@ impl Touched {
 }
 
 /// Runs a kernel that must be rejected; nothing may have been written or counted.
-fn refused<T: Text<Lane = f64>>(
+fn refused<T: Kernel<Lane = f64>>(
     text: T,
     arrays: &mut Touched,
     range: std::ops::Range<usize>,
@@ -183,7 +183,7 @@ fn errors_name_absent_instruction_sets() {
 struct Hazard;
 
 // SAFETY: the body names its slot unconditionally.
-unsafe impl Text for Hazard {
+unsafe impl Kernel for Hazard {
     type Lane = f64;
 
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
@@ -207,7 +207,7 @@ enum Through {
 }
 
 // SAFETY: the slots depend on the variant only.
-unsafe impl Text for Through {
+unsafe impl Kernel for Through {
     type Lane = f64;
 
     fn body<M: Machine<Lane = f64>>(&self, m: M) {

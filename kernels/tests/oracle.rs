@@ -5,7 +5,7 @@ mod support;
 
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
-use stripmine_kernels::law::{Axis, Law, Sum};
+use stripmine_kernels::law::{Axis, Law, ParticleSum};
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, varying};
@@ -161,7 +161,7 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
         system.index(case, law, how);
         assert_eq!((system.strays, system.conflicts), (0, 0), "{case:?}");
         system.forces(case, law, how).unwrap();
-        Sum::PLANAR.map(|sum| system.on_discs(sum))
+        ParticleSum::PLANAR.map(|sum| system.on_discs(sum))
     };
     let fast = {
         let order: Vec<u32> = (0..start.discs as u32).collect();
@@ -175,7 +175,8 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
                 "{found} but {met:?} in {case:?}"
             );
         }
-        Sum::PLANAR.map(|sum| forces.iter().map(|force| force[sum.column::<2>()]).collect::<Vec<f64>>())
+        ParticleSum::PLANAR
+            .map(|sum| forces.iter().map(|force| force[sum.column::<2>()]).collect::<Vec<f64>>())
     };
     for forces in ways().map(faithful).into_iter().chain([fast]) {
         for &sum in L::SUMS {
@@ -279,7 +280,7 @@ fn single_precision_error(coordinates: Coordinates) -> f64 {
         system.index(&case, &law, how);
         assert_eq!((system.strays, system.conflicts), (0, 0));
         system.forces(&case, &law, how).unwrap();
-        for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
+        for sum in [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)] {
             for (found, expected) in system.on_discs(sum).iter().zip(&expected) {
                 square += (found - expected[sum.column::<2>()]).powi(2);
                 scale += expected[sum.column::<2>()].powi(2);

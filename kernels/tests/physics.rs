@@ -3,11 +3,11 @@
 mod support;
 
 use rand::RngExt;
-use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
-use stripmine_kernels::law::{Axis, Sum};
-use stripmine_kernels::noise::{Purpose, Stream};
-use stripmine_kernels::sweep::lattice::Frame;
-use stripmine_kernels::sweep::pair::{Body, Pair};
+use stripmine_kernels::law::granular::{Contact, ContactArm, EqualDiscs, Granular};
+use stripmine_kernels::law::{Axis, ParticleSum};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
+use stripmine_kernels::sweep::lattice::LatticeFrame;
+use stripmine_kernels::sweep::pair::{Pair, PairBody};
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, contacts, random_pairs, varying};
 
@@ -25,13 +25,13 @@ fn pair_on_the_lattice(
     how: (Execution, InstructionSet),
 ) -> ([[f64; 3]; 2], bool) {
     let case = Case { contact, ..Case::new(8, 8) };
-    let frame = Frame { origin: [-3.0, 2.0], edge: [1.1, 1.1] };
+    let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [1.1, 1.1] };
     let law = varying::<true>(contact);
     let mut system = System::<f64, f64>::placed(&case, frame, &pair.bodies);
     system.index(&case, &law, how);
     assert_eq!((system.strays, system.conflicts), (0, 0));
     system.forces(&case, &law, how).unwrap();
-    let sums = Sum::PLANAR.map(|sum| system.on_discs(sum));
+    let sums = ParticleSum::PLANAR.map(|sum| system.on_discs(sum));
     let on = |disc: usize| [sums[0][disc], sums[1][disc], sums[2][disc]];
     let wrapped = |axis: usize| {
         let stored = &system.state[axis][0];
@@ -43,7 +43,7 @@ fn pair_on_the_lattice(
 /// In cell-relative coordinates the two forces of a pair are opposite to the bit, also across a seam.
 #[test]
 fn action_equals_reaction_to_the_bit() {
-    let (mut seams, mut inside, mut random) = (0, 0, Stream::new(1, Purpose::Test, 1));
+    let (mut seams, mut inside, mut random) = (0, 0, Stream::new(1, RandomPurpose::Test, 1));
     for contact in contacts() {
         for mut pair in random_pairs(2, 300) {
             let to = [-3.0 + 8.8 * random.random::<f64>(), 2.0 + 8.8 * random.random::<f64>()];
@@ -88,7 +88,7 @@ fn the_total_force_of_a_system_is_zero() {
         let mut system = System::<f64, f64>::random(&case);
         system.index(&case, &law, ways()[1]);
         system.forces(&case, &law, ways()[1]).unwrap();
-        for sum in [Sum::Force(Axis::X), Sum::Force(Axis::Y)] {
+        for sum in [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)] {
             let forces = system.on_discs(sum);
             let (total, scale) = (forces.iter().sum::<f64>(), forces.iter().map(|f| f.abs()).sum::<f64>());
             assert!(scale > 100.0, "the case has no contacts");
@@ -224,7 +224,7 @@ fn fixed_discs_have_infinite_mass() {
 
 /// Sums of two fixed discs in contact, as in a wall. The forces move nothing, so they must be numbers.
 fn fixed_pair(cohesionless: bool) -> [[f64; 3]; 2] {
-    let bodies = Pair::touching().bodies.map(|body| Body { inverse_mass: 0.0, ..body });
+    let bodies = Pair::touching().bodies.map(|body| PairBody { inverse_mass: 0.0, ..body });
     Pair { bodies }.sums(&varying::<true>(Contact { cohesionless, ..CONTACT }))
 }
 
@@ -242,14 +242,14 @@ fn fixed_contacts_do_not_affect_other_discs() {
         contact: Contact { cohesionless: false, ..CONTACT },
         ..Case::new(13, 9)
     };
-    let frame = Frame { origin: [0.0; 2], edge: [1.1, 1.1] };
-    let fixed = |x, y| Body { inverse_mass: 0.0, ..Body::at(x, y) };
-    let discs = [Body::at(6.0, 6.6), fixed(5.05, 5.0), fixed(6.95, 5.0)];
+    let frame = LatticeFrame { origin: [0.0; 2], edge: [1.1, 1.1] };
+    let fixed = |x, y| PairBody { inverse_mass: 0.0, ..PairBody::at(x, y) };
+    let discs = [PairBody::at(6.0, 6.6), fixed(5.05, 5.0), fixed(6.95, 5.0)];
     let law = varying::<true>(case.contact);
     let mut system = System::<f64, f64>::placed(&case, frame, &discs);
     system.index(&case, &law, (Execution::Chained, InstructionSet::best()));
     system.forces(&case, &law, (Execution::Chained, InstructionSet::best())).unwrap();
-    let on_grain = Sum::PLANAR.map(|sum| system.on_discs(sum)[0]);
+    let on_grain = ParticleSum::PLANAR.map(|sum| system.on_discs(sum)[0]);
     assert!(on_grain.iter().all(|f| f.is_finite()), "{on_grain:?}");
     assert!(on_grain[1] > 1.0, "the grain does not rest on both: {on_grain:?}");
 }
@@ -258,11 +258,11 @@ fn fixed_contacts_do_not_affect_other_discs() {
 #[test]
 fn equal_and_varying_compilations_agree() {
     for contact in contacts() {
-        let disc = Disc { radius: 1.05, inverse_mass: 0.4 };
+        let disc = EqualDiscs { radius: 1.05, inverse_mass: 0.4 };
         let alike = Granular::<true, true> { contact, disc };
         for pair in random_pairs(12, 200) {
-            let Disc { radius, inverse_mass } = disc;
-            let pair = Pair { bodies: pair.bodies.map(|body| Body { radius, inverse_mass, ..body }) };
+            let EqualDiscs { radius, inverse_mass } = disc;
+            let pair = Pair { bodies: pair.bodies.map(|body| PairBody { radius, inverse_mass, ..body }) };
             assert_eq!(pair.sums(&alike), pair.sums(&varying::<true>(contact)));
         }
     }

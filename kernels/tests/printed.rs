@@ -6,15 +6,16 @@ mod support;
 use stripmine_kernels::integrator::gear::Acceleration;
 use stripmine_kernels::isa::{Array, Memory};
 use stripmine_kernels::law::granular::Contact;
-use stripmine_kernels::law::{Axis, Law, Sum};
+use stripmine_kernels::law::{Axis, Law, ParticleSum};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::printed::beside::{Images, IntoBox};
+use stripmine_kernels::printed::beside::{IntoBox, PrintedImages};
 use stripmine_kernels::printed::{
-    ARRAYS, Clear, Corrector, EQUATIONS, Enter, Map, Predictor, Printed, mass_of_fixed_disc,
+    ARRAYS, EQUATIONS, Printed, PrintedClear, PrintedCorrector, PrintedEnter, PrintedMap, PrintedPredictor,
+    mass_of_fixed_disc,
 };
-use stripmine_kernels::sweep::lattice::cells::Check;
+use stripmine_kernels::sweep::lattice::cells::CheckIndex;
 use stripmine_kernels::sweep::lattice::forces::Forces;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame};
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame};
 use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
 use support::{CONTACT, Case, DT, LATTICE, System, all_ways, varying};
 
@@ -74,11 +75,11 @@ fn map(system: &mut Discs, way: Way) {
         way,
         &[
             (&Program::new(IntoBox::<f64>::new(shape, frame)), Length::Discs),
-            (&Program::new(Clear::<f64>::default()), Length::Padded),
-            (&Program::new(Enter::<f64, f64>::new(shape, frame)), Length::Discs),
-            (&Program::new(Check), Length::Discs),
-            (&Program::new(Images::<f64>::default()), Length::Halo),
-            (&Program::new(Map::<f64, f64>::new(shape)), Length::Padded),
+            (&Program::new(PrintedClear::<f64>::default()), Length::Padded),
+            (&Program::new(PrintedEnter::<f64, f64>::new(shape, frame)), Length::Discs),
+            (&Program::new(CheckIndex), Length::Discs),
+            (&Program::new(PrintedImages::<f64>::default()), Length::Halo),
+            (&Program::new(PrintedMap::<f64, f64>::new(shape)), Length::Padded),
         ],
     );
     assert_eq!((system.strays, system.conflicts), (0, 0));
@@ -92,10 +93,10 @@ fn sum(system: &mut Discs, case: &Case, way: Way) {
 }
 
 fn step<const VALUES: usize>(system: &mut Discs, case: &Case, way: Way) {
-    run(system, way, &[(&Program::new(Predictor::<f64, VALUES, 3>::new(DT)), Length::Discs)]);
+    run(system, way, &[(&Program::new(PrintedPredictor::<f64, VALUES, 3>::new(DT)), Length::Discs)]);
     map(system, way);
     sum(system, case, way);
-    let corrector = Corrector::<f64, f64, VALUES, 3>::new(DT, Acceleration::OfVelocities, GRAVITY);
+    let corrector = PrintedCorrector::<f64, f64, VALUES, 3>::new(DT, Acceleration::OfVelocities, GRAVITY);
     run(system, way, &[(&Program::new(corrector), Length::Discs)]);
 }
 
@@ -123,7 +124,7 @@ fn printed_steps_are_bit_equal_in_every_execution() {
 fn scalar(system: &Discs, case: &Case) -> (Vec<[f64; 3]>, usize) {
     let Contact { stiffness, normal_damping, shear_damping, friction, .. } = case.contact;
     let cells = [system.shape.columns() as isize, system.shape.rows() as isize];
-    let Frame { origin, edge } = system.frame;
+    let LatticeFrame { origin, edge } = system.frame;
     let cell =
         |disc: usize| [0, 1].map(|axis| ((system.state[axis][0][disc] - origin[axis]) / edge[axis]) as isize);
     let mut there = std::collections::HashMap::new();
@@ -186,7 +187,7 @@ fn products_equal_branches_to_the_bit() {
         sum(&mut system, &case, (Execution::Eager, InstructionSet::best()));
         let (expected, contacts) = scalar(&system, &case);
         met += contacts;
-        for found in Sum::PLANAR {
+        for found in ParticleSum::PLANAR {
             let on_discs = system.on_discs(found);
             for (disc, force) in expected.iter().enumerate() {
                 let expected = force[found.column::<2>()];
@@ -215,7 +216,7 @@ fn printed_forces_match_ours_up_to_rounding() {
         let mut printed = unscaled(start);
         map(&mut printed, way);
         sum(&mut printed, &case, way);
-        for force in [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque] {
+        for force in [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y), ParticleSum::Torque] {
             let (ours, printed) = (ours.on_discs(force), printed.on_discs(force));
             let rms = (ours.iter().map(|f| f * f).sum::<f64>() / ours.len() as f64).sqrt();
             for (disc, (ours, printed)) in ours.iter().zip(&printed).enumerate() {
@@ -273,12 +274,12 @@ fn equations_name_every_operation_and_array() {
     let system = Discs::random(&case);
     let (shape, frame, mask) = (system.shape, system.frame, Mask::square(2));
     let forces = Forces::<f64, _>::new(Printed { contact: LAW }, &mask, shape, frame, Coordinates::Absolute);
-    let corrector = Corrector::<f64, f64, 6, 3>::new(DT, Acceleration::OfVelocities, GRAVITY);
+    let corrector = PrintedCorrector::<f64, f64, 6, 3>::new(DT, Acceleration::OfVelocities, GRAVITY);
     let programs: [&dyn Runnable; 6] = [
-        &Program::new(Predictor::<f64, 6, 3>::new(DT)),
-        &Program::new(Clear::<f64>::default()),
-        &Program::new(Enter::<f64, f64>::new(shape, frame)),
-        &Program::new(Map::<f64, f64>::new(shape)),
+        &Program::new(PrintedPredictor::<f64, 6, 3>::new(DT)),
+        &Program::new(PrintedClear::<f64>::default()),
+        &Program::new(PrintedEnter::<f64, f64>::new(shape, frame)),
+        &Program::new(PrintedMap::<f64, f64>::new(shape)),
         &Program::new(forces),
         &Program::new(corrector),
     ];
@@ -340,7 +341,7 @@ fn coinciding_empty_cells_give_nan_sums() {
         sum(&mut system, &case, ORACLE);
         let swept = system.shape.swept();
         let finite = system.sums[0][swept].iter().all(|force| force.is_finite());
-        (Sum::PLANAR.map(|sum| system.on_discs(sum)), finite)
+        (ParticleSum::PLANAR.map(|sum| system.on_discs(sum)), finite)
     };
     let numbers = |forces: &[Vec<f64>; 3]| forces.iter().flatten().all(|force| force.is_finite());
 
@@ -403,7 +404,7 @@ fn every_position_in_the_box_has_a_cell() {
             ORACLE,
             &[
                 (&Program::new(IntoBox::<f64>::new(shape, frame)), Length::Discs),
-                (&Program::new(Enter::<f64, f64>::new(shape, frame)), Length::Discs),
+                (&Program::new(PrintedEnter::<f64, f64>::new(shape, frame)), Length::Discs),
             ],
         );
         assert_eq!(system.strays, 0);
@@ -417,10 +418,10 @@ fn every_position_in_the_box_has_a_cell() {
 /// Observations beyond the paper equal those of our own law.
 #[test]
 fn printed_observations_match_ours() {
-    use stripmine_kernels::law::Asked;
+    use stripmine_kernels::law::ObservationRequest;
     let case = case([true, true], 11);
     let way = (Execution::Chained, InstructionSet::best());
-    let asked = Asked { watched: None, dissipation: true, energy: true };
+    let asked = ObservationRequest { watched: None, dissipation: true, energy: true };
     let mut ours = Discs::random(&case);
     ours.index(&case, &varying::<true>(LAW), way);
     ours.forces_and(&case, &varying::<true>(LAW), way, asked).unwrap();

@@ -4,8 +4,8 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 use stripmine_kernels::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme};
-use stripmine_kernels::noise::{NoiseSource, Purpose, draw};
-use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
+use stripmine_kernels::noise::{NoiseSource, RandomPurpose, draw};
+use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, EquationOfMotion};
 
 /// Moves discs by dt times noise, along x by the first number and along y by the second.
 #[derive(Clone, Copy, Debug)]
@@ -36,13 +36,13 @@ const INVERSE_MASS: f64 = 2.0;
 /// The two numbers of a disc in a step.
 fn normals(id: u32, step: u64) -> [f64; 2] {
     let (mut x, mut y) = ([0.0], [0.0]);
-    draw(SEED, Purpose::Thermostat, step, &[id], [&mut x, &mut y]);
+    draw(SEED, RandomPurpose::Thermostat, step, &[id], [&mut x, &mut y]);
     [x[0], y[0]]
 }
 
 /// Positions of the discs after some steps, by id; `force` is a function of the position along each axis.
 fn places<C: Scheme>(
-    motion: &Motion<C>,
+    motion: &EquationOfMotion<C>,
     force: impl Fn(f64) -> f64,
     (ids, steps): (&[u32], u64),
     set: InstructionSet,
@@ -74,9 +74,9 @@ fn places<C: Scheme>(
     places
 }
 
-fn motion<C>(scheme: C, dt: f64) -> Motion<C> {
+fn motion<C>(scheme: C, dt: f64) -> EquationOfMotion<C> {
     let inertia = Inertia::Equal { inverse_mass: INVERSE_MASS, inverse_inertia: 1.0 };
-    Motion { scheme, dt, inertia, gravity: [0.0; 2], noise: NoiseSource::new(SEED) }
+    EquationOfMotion { scheme, dt, inertia, gravity: [0.0; 2], noise: NoiseSource::new(SEED) }
 }
 
 #[test]
@@ -108,8 +108,8 @@ fn long_steps_combine_noise_of_parts() {
     let noise = NoiseSource { seed: SEED, parts: PARTS };
     let numbers = |id: u32, step: u64| [3 * step - 2, 3 * step - 1, 3 * step].map(|part| normals(id, part));
     for set in InstructionSet::available() {
-        let sums = Motion { noise, ..motion(Diffusion, DT) };
-        let exact = Motion { noise, ..motion(Baoab::new(BATH, DT, 1.0 / INVERSE_MASS), DT) };
+        let sums = EquationOfMotion { noise, ..motion(Diffusion, DT) };
+        let exact = EquationOfMotion { noise, ..motion(Baoab::new(BATH, DT, 1.0 / INVERSE_MASS), DT) };
         let [sums, exact] =
             [places(&sums, |_| 0.0, (&ids, STEPS), set), places(&exact, |_| 0.0, (&ids, STEPS), set)];
         for &id in &ids {

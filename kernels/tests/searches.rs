@@ -9,16 +9,17 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::Asked;
+use stripmine_kernels::law::ObservationRequest;
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::CutOff;
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{
-    Cursor, Discs, Finder, Grid, Pairs, Rows, SENTINELS, Sectors, Sweep, Touches, VerletList,
+    CellGrid, DiscColumns, Finder, PairBuffer, PairSequence, RowLayout, SENTINELS, SearchCursor, Sectors,
+    Sweep, VerletList,
 };
-use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
 /// Discs in a box: positions, sectors, and positions relative to the sectors.
 struct Scattered {
@@ -37,9 +38,9 @@ fn scattered(
     discs: usize,
     seed: u64,
 ) -> Scattered {
-    let grid = Grid::new(ORIGIN, sides, periodic, reach + skin, f64::INFINITY, discs).unwrap();
+    let grid = CellGrid::new(ORIGIN, sides, periodic, reach + skin, f64::INFINITY, discs).unwrap();
     let mut sectors = Sectors::new(grid, discs, reach);
-    let mut random = Stream::new(seed, Purpose::Test, 0);
+    let mut random = Stream::new(seed, RandomPurpose::Test, 0);
     let mut places = [vec![], vec![]];
     let mut positions = vec![];
     for disc in 0..discs {
@@ -65,7 +66,7 @@ type Found = BTreeMap<[u32; 2], [f64; 2]>;
 fn found<F: Finder<f64, f64>>(finder: &F, places: &[Vec<f64>; 2]) -> Found {
     let (rows, mut all) = (finder.rows().count, Found::new());
     for band in [0..rows / 2, rows / 2..rows] {
-        let (mut cursor, mut list) = (Cursor::at(band.start), F::Found::default());
+        let (mut cursor, mut list) = (SearchCursor::at(band.start), F::Found::default());
         while cursor.row() < band.end {
             let columns = [places[0].as_slice(), places[1].as_slice()];
             finder.find(columns, band.clone(), &mut cursor, &mut list, InstructionSet::best()).unwrap();
@@ -128,7 +129,7 @@ proptest! {
         prop_assert!(list.entries() >= expected.len());
         // Every disc moves as far as the skin allows: the list is still valid.
         let (mut places, mut positions) = (places, positions);
-        let mut random = Stream::new(seed, Purpose::Test, 1);
+        let mut random = Stream::new(seed, RandomPurpose::Test, 1);
         for (disc, position) in positions.iter_mut().enumerate() {
             let angle = std::f64::consts::TAU * random.random::<f64>();
             for (axis, along) in [angle.cos(), angle.sin()].into_iter().enumerate() {
@@ -160,14 +161,14 @@ proptest! {
 }
 
 /// An empty lattice for discs that touch at a distance of 1, with its frame.
-fn lattice(columns: usize) -> (Occupancy, Frame) {
+fn lattice(columns: usize) -> (Occupancy, LatticeFrame) {
     let shape = LatticeShape::new(columns, 20, &Mask::square(2), [false; 2]).unwrap();
-    let frame = Frame { origin: [0.0; 2], edge: [0.6, 0.6] };
+    let frame = LatticeFrame { origin: [0.0; 2], edge: [0.6, 0.6] };
     (Occupancy::new(shape, frame, 1, 1.0, false), frame)
 }
 
 fn search(lattice: &Lattice<'_, f64>, entries: usize) -> Candidates {
-    let (column, mut cursor, mut found) = (vec![0.0; entries], Cursor::at(0), Candidates::default());
+    let (column, mut cursor, mut found) = (vec![0.0; entries], SearchCursor::at(0), Candidates::default());
     let places: [&[f64]; 2] = [&column, &column];
     lattice.find(places, 0..20, &mut cursor, &mut found, InstructionSet::best()).unwrap();
     found
@@ -214,13 +215,13 @@ struct Counted<'a>(&'a Sectors, AtomicUsize);
 
 // SAFETY: all pairs are those of the sectors.
 unsafe impl Finder<f64, f64> for Counted<'_> {
-    type Found = Touches<f64>;
+    type Found = PairBuffer<f64>;
 
     fn discs(&self) -> usize {
         Finder::<f64, f64>::discs(self.0)
     }
 
-    fn rows(&self) -> Rows {
+    fn rows(&self) -> RowLayout {
         Finder::<f64, f64>::rows(self.0)
     }
 
@@ -228,8 +229,8 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
         &self,
         places: [&[f64]; 2],
         rows: Range<usize>,
-        cursor: &mut Cursor,
-        found: &mut Touches<f64>,
+        cursor: &mut SearchCursor,
+        found: &mut PairBuffer<f64>,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
         self.0.find(places, rows, cursor, found, set)
@@ -243,12 +244,12 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
         Finder::<f64, f64>::searched(self.0, rows)
     }
 
-    fn find_part(&self, places: [&[f64]; 2], part: Range<usize>, found: &mut Touches<f64>) {
+    fn find_part(&self, places: [&[f64]; 2], part: Range<usize>, found: &mut PairBuffer<f64>) {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.find_part(places, part, found);
     }
 
-    fn pairs<'a>(&'a self, found: &'a Touches<f64>) -> impl Pairs<f64> + 'a {
+    fn pairs<'a>(&'a self, found: &'a PairBuffer<f64>) -> impl PairSequence<f64> + 'a {
         Finder::<f64, f64>::pairs(self.0, found)
     }
 }
@@ -268,7 +269,7 @@ fn joint_searches_are_bit_equal_to_serial_ones() {
         // Some hundred discs per sector, except in the last case.
         let wide = if is_coarse { sides.map(|side| (side / 3.0_f64).max(1.0)) } else { [1.0; 2] };
         let reach = wide[0].min(wide[1]);
-        let grid = Grid::new(ORIGIN, sides, periodic, reach, f64::INFINITY, discs).unwrap();
+        let grid = CellGrid::new(ORIGIN, sides, periodic, reach, f64::INFINITY, discs).unwrap();
         let Scattered { positions, .. } = scattered(sides, periodic, 1.0, 0.0, discs, 5);
         let mut sectors = Sectors::new(grid, discs, 1.0);
         let mut places = [vec![], vec![]];
@@ -289,7 +290,7 @@ fn joint_searches_are_bit_equal_to_serial_ones() {
             pool.install(|| {
                 let counted = Counted(&sectors, AtomicUsize::new(0));
                 let mut sweep = Sweep::new(counted.rows());
-                let discs_of = Discs {
+                let discs_of = DiscColumns {
                     place: [&places[0], &places[1]],
                     velocity: [&[], &[]],
                     omega: &[],
@@ -298,7 +299,7 @@ fn joint_searches_are_bit_equal_to_serial_ones() {
                     inverse_mass: &[],
                 };
                 let mut sums = [0, 1, 2].map(|_| vec![0.0; discs]);
-                let asked = Asked { energy: true, ..Asked::default() };
+                let asked = ObservationRequest { energy: true, ..ObservationRequest::default() };
                 let columns = sums.each_mut().map(Vec::as_mut_slice);
                 let met =
                     sweep.run(&law, &counted, &discs_of, columns, asked, InstructionSet::best()).unwrap();

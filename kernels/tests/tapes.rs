@@ -1,19 +1,21 @@
 //! Properties of tapes: registers, tallies, listings, folded arithmetic.
 
 use std::collections::HashMap;
-use stripmine_kernels::backend::tape::{Action, Effect, File, Indices, Number, Operand, RegisterName, Truth};
+use stripmine_kernels::backend::tape::{
+    Effect, Indices, Number, Operand, PredicateInstruction, RegisterKind, RegisterName, TapeAction,
+};
 use stripmine_kernels::backend::{Precision, Tape};
 use stripmine_kernels::integrator::Inertia;
-use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor};
-use stripmine_kernels::isa::{Array, Element, Machine, Memory, Op, OpCounts, Slot, Text, Vector};
+use stripmine_kernels::integrator::gear::{Acceleration, GearCorrector, GearPredictor};
+use stripmine_kernels::isa::{Array, Element, Kernel, Machine, Memory, Op, OpCounts, Slot, Vector};
 use stripmine_kernels::law::Law;
-use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::granular::{Contact, ContactArm, EqualDiscs, Granular};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::lattice::cells::{Check, Clear, Enter, Images};
+use stripmine_kernels::sweep::lattice::cells::{CheckIndex, ClearIndex, EnterDiscs, IndexImages};
 use stripmine_kernels::sweep::lattice::forces::Forces;
-use stripmine_kernels::sweep::lattice::vectors::Spread;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::sweep::lattice::vectors::SpreadToLattice;
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame, LatticeShape};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 fn law<const FRICTION: bool, const EQUAL: bool>() -> Granular<FRICTION, EQUAL> {
@@ -26,23 +28,23 @@ fn law<const FRICTION: bool, const EQUAL: bool>() -> Granular<FRICTION, EQUAL> {
         cohesionless: true,
         arm: ContactArm::Overlap,
     };
-    Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
+    Granular { contact, disc: EqualDiscs { radius: 1.0, inverse_mass: 1.0 } }
 }
 
-fn lattice(mask: &Mask) -> (LatticeShape, Frame) {
+fn lattice(mask: &Mask) -> (LatticeShape, LatticeFrame) {
     let shape = LatticeShape::new(9, 7, mask, [true, false]).unwrap();
-    (shape, Frame { origin: [0.0, 0.0], edge: [1.1, 1.2] })
+    (shape, LatticeFrame { origin: [0.0, 0.0], edge: [1.1, 1.2] })
 }
 
 /// Registers that an instruction reads, from its action alone.
-fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
+fn reads<L: Copy>(action: &TapeAction<L>) -> Vec<RegisterName> {
     let register = |operand: &Operand<L>| match operand {
         Operand::Register(name) => Some(*name),
         Operand::Uniform(_) => None,
         Operand::Memory(there) => panic!("a tape has {there} as an operand"),
     };
     let names: Vec<Option<RegisterName>> = match action {
-        Action::Number(_, number) => match number {
+        TapeAction::Number(_, number) => match number {
             Number::Unary(_, a) => vec![register(a)],
             Number::Binary(_, a, b) => vec![register(a), register(b)],
             Number::Select(p, a, b) => vec![Some(*p), register(a), register(b)],
@@ -50,17 +52,17 @@ fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
             Number::Gather(_, a, elsewhere) => vec![Some(*a), register(elsewhere)],
             Number::Numbers | Number::Load(_) | Number::LoadShifted(_) => vec![],
         },
-        Action::Truth(_, truth) => match truth {
-            Truth::Compare(_, a, b) => vec![register(a), register(b)],
-            Truth::Connective(_, a, b) => vec![Some(*a), Some(*b)],
-            Truth::Negation(_, a) => vec![Some(*a)],
+        TapeAction::Truth(_, truth) => match truth {
+            PredicateInstruction::Compare(_, a, b) => vec![register(a), register(b)],
+            PredicateInstruction::Connective(_, a, b) => vec![Some(*a), Some(*b)],
+            PredicateInstruction::Negation(_, a) => vec![Some(*a)],
         },
-        Action::Indices(_, indices) => match indices {
+        TapeAction::Indices(_, indices) => match indices {
             Indices::ToIndex(a) => vec![register(a)],
             Indices::Gather(_, a) => vec![Some(*a)],
             Indices::Load(_) => vec![],
         },
-        Action::Effect(effect) => match effect {
+        TapeAction::Effect(effect) => match effect {
             Effect::Store(_, a) => vec![register(a)],
             Effect::Count(_, a) | Effect::StoreIndex(_, a) => vec![Some(*a)],
             Effect::Scatter(_, a, b) => vec![Some(*a), register(b)],
@@ -71,12 +73,12 @@ fn reads<L: Copy>(action: &Action<L>) -> Vec<RegisterName> {
 }
 
 /// Register file of an instruction's result.
-fn result_file<L>(action: &Action<L>) -> Option<File> {
+fn result_file<L>(action: &TapeAction<L>) -> Option<RegisterKind> {
     match action {
-        Action::Number(..) => Some(File::Number),
-        Action::Truth(..) => Some(File::Predicate),
-        Action::Indices(..) => Some(File::Index),
-        Action::Effect(_) => None,
+        TapeAction::Number(..) => Some(RegisterKind::Number),
+        TapeAction::Truth(..) => Some(RegisterKind::Predicate),
+        TapeAction::Indices(..) => Some(RegisterKind::Index),
+        TapeAction::Effect(_) => None,
     }
 }
 
@@ -84,7 +86,7 @@ fn result_file<L>(action: &Action<L>) -> Option<File> {
 /// are no more registers than values alive at once.
 fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
     let mut held: HashMap<RegisterName, usize> = HashMap::new();
-    let mut last_read: Vec<(File, usize, usize)> = Vec::new();
+    let mut last_read: Vec<(RegisterKind, usize, usize)> = Vec::new();
     for (at, instruction) in tape.instructions().iter().enumerate() {
         for operand in reads(&instruction.action) {
             let value = *held
@@ -107,7 +109,7 @@ fn registers_are_sound<L: Element>(name: &str, tape: &Tape<L>) {
         }
     }
     assert!(last_read.iter().all(|(_, written, read)| read > written), "{name}: results that are never read");
-    for file in File::ALL {
+    for file in RegisterKind::ALL {
         let alive = |at: usize| {
             last_read.iter().filter(|(of, written, read)| *of == file && *written <= at && at < *read).count()
         };
@@ -126,11 +128,11 @@ fn tally_is_the_sum_over_instructions<L: Element>(name: &str, tape: &Tape<L>) {
         let (_, counts) = sections.iter_mut().find(|(section, _)| *section == instruction.section).unwrap();
         counts.record(instruction.op());
         let converts = match instruction.action {
-            Action::Number(
+            TapeAction::Number(
                 _,
                 Number::Load(there) | Number::LoadShifted(there) | Number::Gather(there, ..),
             )
-            | Action::Effect(Effect::Store(there, _)) => there.element != L::NAME,
+            | TapeAction::Effect(Effect::Store(there, _)) => there.element != L::NAME,
             _ => false,
         };
         if converts {
@@ -184,28 +186,29 @@ fn listing_has_a_line_for_each_instruction<L: Element>(name: &str, tape: &Tape<L
 fn every_tape(mut double: impl FnMut(&str, &Tape<f64>), mut single: impl FnMut(&str, &Tape<f32>)) {
     let inertia = Inertia::Equal { inverse_mass: 1.0, inverse_inertia: 2.0 };
     let fall = [0.0, -9.81];
-    double("Predictor 6", &Tape::record(&Predictor::<f64, f64, 6, 3>::new(1e-3)));
-    double("Predictor 4 to f32", &Tape::record(&Predictor::<f64, f32, 4, 2>::new(1e-3)));
-    single("Predictor f32", &Tape::record(&Predictor::<f32, f32, 5, 3>::new(1e-3)));
-    let corrector = Corrector::<f64, f64, 6, 3>::new(1e-3, Acceleration::OfPositions, Inertia::Varying, fall);
+    double("Predictor 6", &Tape::record(&GearPredictor::<f64, f64, 6, 3>::new(1e-3)));
+    double("Predictor 4 to f32", &Tape::record(&GearPredictor::<f64, f32, 4, 2>::new(1e-3)));
+    single("Predictor f32", &Tape::record(&GearPredictor::<f32, f32, 5, 3>::new(1e-3)));
+    let corrector =
+        GearCorrector::<f64, f64, 6, 3>::new(1e-3, Acceleration::OfPositions, Inertia::Varying, fall);
     double("Corrector 6", &Tape::record(&corrector));
-    let corrector = Corrector::<f64, f32, 4, 3>::new(1e-3, Acceleration::OfVelocities, inertia, fall);
+    let corrector = GearCorrector::<f64, f32, 4, 3>::new(1e-3, Acceleration::OfVelocities, inertia, fall);
     double("Corrector 4 of f32", &Tape::record(&corrector));
-    let corrector = Corrector::<f32, f32, 5, 2>::new(1e-3, Acceleration::OfVelocities, inertia, [0.0; 2]);
+    let corrector = GearCorrector::<f32, f32, 5, 2>::new(1e-3, Acceleration::OfVelocities, inertia, [0.0; 2]);
     single("Corrector f32", &Tape::record(&corrector));
 
     let mask = Mask::square(2);
     let (shape, frame) = lattice(&mask);
-    double("Clear", &Tape::record(&Clear));
-    double("Check", &Tape::record(&Check));
-    double("Images", &Tape::record(&Images));
+    double("Clear", &Tape::record(&ClearIndex));
+    double("Check", &Tape::record(&CheckIndex));
+    double("Images", &Tape::record(&IndexImages));
     for coordinates in [Coordinates::Absolute, Coordinates::CellRelative] {
-        double("Enter f64", &Tape::record(&Enter::<f64, f64>::new(shape, frame, coordinates)));
-        double("Enter f32", &Tape::record(&Enter::<f32, f32>::new(shape, frame, coordinates)));
-        double("Enter f64 to f32", &Tape::record(&Enter::<f64, f32>::new(shape, frame, coordinates)));
+        double("Enter f64", &Tape::record(&EnterDiscs::<f64, f64>::new(shape, frame, coordinates)));
+        double("Enter f32", &Tape::record(&EnterDiscs::<f32, f32>::new(shape, frame, coordinates)));
+        double("Enter f64 to f32", &Tape::record(&EnterDiscs::<f64, f32>::new(shape, frame, coordinates)));
         let fields = <Granular<true, false> as Law<2>>::FIELDS;
-        double("Spread", &Tape::record(&Spread::<f64>::new(shape, coordinates, fields)));
-        single("Spread f32", &Tape::record(&Spread::<f32>::new(shape, coordinates, fields)));
+        double("Spread", &Tape::record(&SpreadToLattice::<f64>::new(shape, coordinates, fields)));
+        single("Spread f32", &Tape::record(&SpreadToLattice::<f32>::new(shape, coordinates, fields)));
         let full = Forces::<f64, _>::new(law::<true, false>(), &mask, shape, frame, coordinates);
         double("Forces", &Tape::record(&full));
         let full = Forces::<f32, _>::new(law::<true, true>(), &mask, shape, frame, coordinates);
@@ -238,18 +241,18 @@ fn listings_have_a_line_for_each_instruction() {
 /// A change of precision is counted at every load, gather and store that makes one, and nowhere else.
 #[test]
 fn changes_of_precision_are_counted() {
-    fn widened<T: Text>(text: &T) -> u64 {
+    fn widened<T: Kernel>(text: &T) -> u64 {
         Tape::record(text).tally().iter().map(|(_, counts)| counts.of(Op::Widen)).sum()
     }
-    assert_eq!(widened(&Predictor::<f64, f64, 5, 3>::new(1e-3)), 0);
-    assert_eq!(widened(&Predictor::<f64, f32, 5, 3>::new(1e-3)), 3);
+    assert_eq!(widened(&GearPredictor::<f64, f64, 5, 3>::new(1e-3)), 0);
+    assert_eq!(widened(&GearPredictor::<f64, f32, 5, 3>::new(1e-3)), 3);
     let mixed =
-        Corrector::<f64, f32, 5, 2>::new(1e-3, Acceleration::OfVelocities, Inertia::Varying, [0.0; 2]);
+        GearCorrector::<f64, f32, 5, 2>::new(1e-3, Acceleration::OfVelocities, Inertia::Varying, [0.0; 2]);
     assert_eq!(widened(&mixed), 2);
     let (shape, frame) = lattice(&Mask::square(2));
     // Periodic along x only: two loads, one store of the wrapped x, two stores for the lattice.
-    assert_eq!(widened(&Enter::<f32, f32>::new(shape, frame, Coordinates::CellRelative)), 5);
-    assert_eq!(widened(&Enter::<f64, f32>::new(shape, frame, Coordinates::CellRelative)), 2);
+    assert_eq!(widened(&EnterDiscs::<f32, f32>::new(shape, frame, Coordinates::CellRelative)), 5);
+    assert_eq!(widened(&EnterDiscs::<f64, f32>::new(shape, frame, Coordinates::CellRelative)), 2);
 }
 
 /// Stores numbers that are known when the kernel is recorded, and one that is not.
@@ -257,7 +260,7 @@ fn changes_of_precision_are_counted() {
 struct Folded<L>(std::marker::PhantomData<L>);
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl<L: Element> Text for Folded<L> {
+unsafe impl<L: Element> Kernel for Folded<L> {
     type Lane = L;
 
     fn body<M: Machine<Lane = L>>(&self, m: M) {
@@ -274,7 +277,7 @@ fn folding_costs_nothing<L: Precision>(expected: L) {
     let instructions = program.tape().instructions();
     let ops: Vec<Op> = instructions.iter().map(|instruction| instruction.op()).collect();
     assert_eq!(ops, [Op::Store, Op::Load, Op::Add, Op::Store]);
-    let Action::Effect(Effect::Store(_, Operand::Uniform(known))) = instructions[0].action else {
+    let TapeAction::Effect(Effect::Store(_, Operand::Uniform(known))) = instructions[0].action else {
         panic!("{:?} stores no scalar operand", instructions[0]);
     };
     assert_eq!(known.bits(), expected.bits());

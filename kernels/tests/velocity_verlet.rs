@@ -1,11 +1,11 @@
 //! Velocity Verlet: state, order and exact solutions; kernels and the fast pass give the same bits.
 
 use stripmine_kernels::integrator::gear::STATE;
-use stripmine_kernels::integrator::velocity_verlet::{Drift, Kick, VelocityVerlet};
+use stripmine_kernels::integrator::velocity_verlet::{VelocityVerlet, VerletDrift, VerletKick};
 use stripmine_kernels::integrator::{Inertia, Scheme};
 use stripmine_kernels::isa::{Array, Memory, Slot};
 use stripmine_kernels::noise::NoiseSource;
-use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, Motion};
+use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, EquationOfMotion};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const INERTIA: Inertia = Inertia::Equal { inverse_mass: 0.5, inverse_inertia: 4.0 };
@@ -32,8 +32,8 @@ fn force(r: f64, v: f64) -> f64 {
 fn by_programs(state: &mut State, dt: f64, gravity: [f64; 2], steps: usize, force: impl Fn(f64, f64) -> f64) {
     let discs = state[0][0].len();
     let (execution, set) = (Execution::Chained, InstructionSet::best());
-    let drift = Program::new(Drift::<f64, f64, FREEDOMS>::new(dt));
-    let kick = Program::new(Kick::<f64, f64, FREEDOMS>::new(dt, INERTIA, gravity));
+    let drift = Program::new(VerletDrift::<f64, f64, FREEDOMS>::new(dt));
+    let kick = Program::new(VerletKick::<f64, f64, FREEDOMS>::new(dt, INERTIA, gravity));
     let cell: Vec<u32> = (1..=discs as u32).collect();
     for _ in 0..steps {
         let mut velocity: [Vec<f64>; FREEDOMS] = std::array::from_fn(|_| vec![0.0; discs]);
@@ -72,7 +72,13 @@ fn by_programs(state: &mut State, dt: f64, gravity: [f64; 2], steps: usize, forc
 /// Runs the fast pass, which leaves predicted states; the last one is corrected as an observer does it.
 fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64>; 2]; FREEDOMS] {
     let discs = state[0][0].len();
-    let motion = Motion { scheme: VelocityVerlet, dt, inertia: INERTIA, gravity, noise: NoiseSource::new(0) };
+    let motion = EquationOfMotion {
+        scheme: VelocityVerlet,
+        dt,
+        inertia: INERTIA,
+        gravity,
+        noise: NoiseSource::new(0),
+    };
     let mut columns: Vec<Vec<Vec<f64>>> = state.iter().map(|row| row[..2].to_vec()).collect();
     // Forces that give the initial accelerations, without gravity.
     let mut sums: Vec<Vec<f64>> = (0..FREEDOMS)

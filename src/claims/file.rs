@@ -1,12 +1,12 @@
 //! Files of claims.
 
 use serde::Deserialize;
-use stripmine_physics::input::{InputErrors, InputText, Reason, Spot};
+use stripmine_physics::input::{InputErrors, InputText, MistakeKind, Spot};
 use toml::Spanned;
 
 /// Source of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
-pub enum Source {
+pub enum ClaimSource {
     /// Buchholtz and Pöschel 1993: the lattice on a vector machine.
     BP93,
     /// Isobe 1999: event-driven hard discs.
@@ -22,20 +22,26 @@ pub enum Source {
     Stripmine,
 }
 
-impl Source {
+impl ClaimSource {
     /// All sources, in the order of the report.
-    pub const ALL: [Source; 6] =
-        [Source::BP93, Source::ISO99, Source::LAN17, Source::PWP, Source::Literature, Source::Stripmine];
+    pub const ALL: [ClaimSource; 6] = [
+        ClaimSource::BP93,
+        ClaimSource::ISO99,
+        ClaimSource::LAN17,
+        ClaimSource::PWP,
+        ClaimSource::Literature,
+        ClaimSource::Stripmine,
+    ];
 
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
-            Source::BP93 => "BP93",
-            Source::ISO99 => "ISO99",
-            Source::LAN17 => "LAN17",
-            Source::PWP => "PWP",
-            Source::Literature => "literature",
-            Source::Stripmine => "Stripmine",
+            ClaimSource::BP93 => "BP93",
+            ClaimSource::ISO99 => "ISO99",
+            ClaimSource::LAN17 => "LAN17",
+            ClaimSource::PWP => "PWP",
+            ClaimSource::Literature => "literature",
+            ClaimSource::Stripmine => "Stripmine",
         }
     }
 
@@ -52,7 +58,7 @@ pub struct Claim {
     /// Name: small letters, digits and dashes.
     pub id: String,
     /// Source.
-    pub source: Source,
+    pub source: ClaimSource,
     /// Location in the source.
     pub place: String,
     /// Report item that tests it; none where no item does.
@@ -64,7 +70,7 @@ pub struct Claim {
     /// Expression for the value's 95 % half-width.
     pub error: Option<String>,
     /// Limit; its keys are on the same level as the others.
-    pub limit: Limit,
+    pub limit: ClaimLimit,
     /// Origin of the expected value: paper and table, program with version and command, or a formula.
     pub(crate) reference: Option<String>,
     /// Note for the reader.
@@ -73,7 +79,7 @@ pub struct Claim {
     pub verdict: Option<Unjudged>,
     /// Earlier limits, the newest first.
     #[serde(default)]
-    pub before: Vec<Limit>,
+    pub before: Vec<ClaimLimit>,
     /// Location in its file.
     #[serde(skip)]
     pub at: Spot,
@@ -82,11 +88,11 @@ pub struct Claim {
 /// Limit that decides a claim.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Limit {
+pub struct ClaimLimit {
     /// Date on which it was set: year-month-day.
     pub since: String,
     /// Expected value.
-    pub expected: Option<Expected>,
+    pub expected: Option<ExpectedValue>,
     /// Relation of the value to the expected one.
     pub(crate) relation: Option<Relation>,
     /// Absolute tolerance, in the unit of the value.
@@ -101,7 +107,7 @@ const LIMIT: [&str; 5] = ["since", "expected", "relation", "tolerance", "relativ
 /// Expected value.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
-pub enum Expected {
+pub enum ExpectedValue {
     /// Statement that is true or false.
     Truth(bool),
     /// Number.
@@ -140,11 +146,11 @@ pub enum Unjudged {
 impl Claim {
     /// Error that rejects the claim, with its location.
     pub(super) fn refused(&self, cause: impl Into<String>) -> InputErrors {
-        self.at.error(Reason::Contradiction, cause).into()
+        self.at.error(MistakeKind::Contradiction, cause).into()
     }
 
     fn check(&self) -> Result<(), InputErrors> {
-        let Limit { expected, relation, tolerance, relative, .. } = &self.limit;
+        let ClaimLimit { expected, relation, tolerance, relative, .. } = &self.limit;
         let has_tolerance = tolerance.is_some() || relative.is_some();
         let cause = match (&self.value, self.verdict) {
             (Some(_), Some(_)) => "a claim with a value must not have a `verdict`",
@@ -158,7 +164,9 @@ impl Claim {
             (Some(_), None) if expected.is_none() || relation.is_none() => {
                 "a value needs `expected` and `relation`"
             }
-            (Some(_), None) if self.reference.is_none() && !matches!(expected, Some(Expected::Truth(_))) => {
+            (Some(_), None)
+                if self.reference.is_none() && !matches!(expected, Some(ExpectedValue::Truth(_))) =>
+            {
                 "an expected number needs a `reference`: paper and table, program and version, or the formula"
             }
             _ if tolerance.is_some() && relative.is_some() => "give `tolerance` or `relative`, not both",
@@ -181,7 +189,7 @@ pub fn read(file: &str, text: &str) -> Result<Vec<Claim>, InputErrors> {
     }
     let file = format!("claims/{file}");
     let text = InputText::new(&file, text);
-    let wrong = |cause: &toml::de::Error, spot: &Spot| spot.error(Reason::Type, cause.message());
+    let wrong = |cause: &toml::de::Error, spot: &Spot| spot.error(MistakeKind::Type, cause.message());
     let all: File = toml::from_str(text.text)
         .map_err(|cause| wrong(&cause, &text.spot(cause.span().map_or(0, |span| span.start))))?;
     let claim = |it: Spanned<toml::Table>| -> Result<Claim, InputErrors> {
@@ -209,7 +217,7 @@ mod tests {
         let claims =
             read("bp93.toml", &format!("# head\n\n{GOOD}\n{}", GOOD.replace("\"a\"", "\"b\""))).unwrap();
         assert_eq!(claims.iter().map(|claim| claim.at.place.unwrap().line).collect::<Vec<_>>(), [3, 15]);
-        assert_eq!(claims[1].limit.expected, Some(Expected::Number(59.0)));
+        assert_eq!(claims[1].limit.expected, Some(ExpectedValue::Number(59.0)));
     }
 
     #[test]

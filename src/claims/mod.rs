@@ -6,17 +6,17 @@
 mod file;
 mod verdict;
 
-pub use file::{Claim, Expected, Limit, Source, read};
-pub use verdict::{Judged, Verdict};
+pub use file::{Claim, ClaimLimit, ClaimSource, ExpectedValue, read};
+pub use verdict::{ClaimJudgement, ClaimVerdict};
 
-use crate::frame::{Expressions, Scope};
+use crate::frame::{ExpressionScope, Expressions};
 use rust_embed::RustEmbed;
 use stripmine_physics::input::InputErrors;
 
 /// Files of claims: read from the source tree by a development build, embedded in a release.
 #[derive(RustEmbed)]
 #[folder = "claims"]
-struct Files;
+struct ClaimFiles;
 
 /// Reads all claims, source by source, in the order of the files.
 ///
@@ -24,10 +24,10 @@ struct Files;
 /// [`InputErrors`] with the file and line of the mistake.
 pub fn all() -> Result<Vec<Claim>, InputErrors> {
     let mut claims = vec![];
-    for source in Source::ALL {
+    for source in ClaimSource::ALL {
         let name = source.file();
         let text =
-            Files::get(&name).map_or(String::new(), |it| String::from_utf8_lossy(&it.data).into_owned());
+            ClaimFiles::get(&name).map_or(String::new(), |it| String::from_utf8_lossy(&it.data).into_owned());
         claims.extend(file::read(&name, &text)?);
     }
     for (at, claim) in claims.iter().enumerate() {
@@ -42,13 +42,14 @@ pub fn all() -> Result<Vec<Claim>, InputErrors> {
 pub(crate) fn judge_where_possible<'c>(
     claims: &'c [Claim],
     item: &str,
-    scope: &Scope,
+    scope: &ExpressionScope,
     date: &str,
-) -> Vec<Judged<'c>> {
+) -> Vec<ClaimJudgement<'c>> {
     let expressions = Expressions::new();
     let own = claims.iter().filter(|claim| claim.item.as_deref() == Some(item));
-    let one =
-        |claim| verdict::judge(claim, &expressions, scope, date).unwrap_or_else(|_| Judged::unjudged(claim));
+    let one = |claim| {
+        verdict::judge(claim, &expressions, scope, date).unwrap_or_else(|_| ClaimJudgement::unjudged(claim))
+    };
     own.map(one).collect()
 }
 
@@ -59,9 +60,9 @@ pub(crate) fn judge_where_possible<'c>(
 pub fn judge<'c>(
     claims: &'c [Claim],
     item: &str,
-    scope: &Scope,
+    scope: &ExpressionScope,
     date: &str,
-) -> Result<Vec<Judged<'c>>, InputErrors> {
+) -> Result<Vec<ClaimJudgement<'c>>, InputErrors> {
     let expressions = Expressions::new();
     let own = claims.iter().filter(|claim| claim.item.as_deref() == Some(item));
     own.map(|claim| verdict::judge(claim, &expressions, scope, date)).collect()

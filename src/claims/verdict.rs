@@ -1,14 +1,14 @@
 //! Verdicts: one function of value, error, expectation and tolerance.
 
-use super::file::{Claim, Expected, Limit, Relation, Unjudged};
-use crate::frame::{Expressions, Scope};
+use super::file::{Claim, ClaimLimit, ExpectedValue, Relation, Unjudged};
+use crate::frame::{ExpressionScope, Expressions};
 use minijinja::value::{Value, ValueKind};
 use stripmine_physics::input::InputErrors;
 use stripmine_physics::number::{significant, with_bar};
 
 /// Verdict of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
+pub enum ClaimVerdict {
     /// The value is within the limit, including its error.
     Reproduced,
     /// The value is outside the limit, including its error.
@@ -21,35 +21,35 @@ pub enum Verdict {
     NotTested,
 }
 
-impl Verdict {
+impl ClaimVerdict {
     /// All verdicts, in the order of tables.
-    pub const ALL: [Verdict; 5] = [
-        Verdict::Reproduced,
-        Verdict::NotReproduced,
-        Verdict::Undecided,
-        Verdict::Contradiction,
-        Verdict::NotTested,
+    pub const ALL: [ClaimVerdict; 5] = [
+        ClaimVerdict::Reproduced,
+        ClaimVerdict::NotReproduced,
+        ClaimVerdict::Undecided,
+        ClaimVerdict::Contradiction,
+        ClaimVerdict::NotTested,
     ];
 
     /// Verdict in words.
     pub const fn words(self) -> &'static str {
         match self {
-            Verdict::Reproduced => "reproduced",
-            Verdict::NotReproduced => "not reproduced",
-            Verdict::Undecided => "undecided",
-            Verdict::Contradiction => "source contradicts itself",
-            Verdict::NotTested => "not tested yet",
+            ClaimVerdict::Reproduced => "reproduced",
+            ClaimVerdict::NotReproduced => "not reproduced",
+            ClaimVerdict::Undecided => "undecided",
+            ClaimVerdict::Contradiction => "source contradicts itself",
+            ClaimVerdict::NotTested => "not tested yet",
         }
     }
 }
 
 /// A claim with its verdict.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judged<'c> {
+pub struct ClaimJudgement<'c> {
     /// The claim.
     pub claim: &'c Claim,
     /// Its verdict.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// Formatted value; empty where there is none.
     pub value: String,
     /// Set if the limit is newer than the result.
@@ -62,19 +62,19 @@ impl PartialEq for Claim {
     }
 }
 
-impl Judged<'_> {
+impl ClaimJudgement<'_> {
     /// Judgement of a claim that no item tests.
-    pub(crate) fn unjudged(claim: &Claim) -> Judged<'_> {
+    pub(crate) fn unjudged(claim: &Claim) -> ClaimJudgement<'_> {
         let verdict = match claim.verdict {
-            Some(Unjudged::Contradiction) => Verdict::Contradiction,
-            _ => Verdict::NotTested,
+            Some(Unjudged::Contradiction) => ClaimVerdict::Contradiction,
+            _ => ClaimVerdict::NotTested,
         };
-        Judged { claim, verdict, value: String::new(), is_too_new: false }
+        ClaimJudgement { claim, verdict, value: String::new(), is_too_new: false }
     }
 
     /// Formatted expectation.
     pub fn expected(&self) -> String {
-        let Limit { expected, relation, tolerance, relative, .. } = &self.claim.limit;
+        let ClaimLimit { expected, relation, tolerance, relative, .. } = &self.claim.limit;
         let number = |value: &f64| significant(*value, 8);
         let numbers = |values: &[f64]| values.iter().map(number).collect::<Vec<_>>().join(", ");
         let within = match (tolerance, relative) {
@@ -83,11 +83,11 @@ impl Judged<'_> {
             _ => String::new(),
         };
         match (expected, relation) {
-            (Some(Expected::Numbers(ends)), Some(Relation::Between)) if ends.len() == 2 => {
+            (Some(ExpectedValue::Numbers(ends)), Some(Relation::Between)) if ends.len() == 2 => {
                 format!("{} to {}", number(&ends[0]), number(&ends[1]))
             }
-            (Some(Expected::Truth(truth)), _) => if *truth { "yes" } else { "no" }.to_owned(),
-            (Some(Expected::Words(words)), _) => words.clone(),
+            (Some(ExpectedValue::Truth(truth)), _) => if *truth { "yes" } else { "no" }.to_owned(),
+            (Some(ExpectedValue::Words(words)), _) => words.clone(),
             (Some(expected), Some(relation)) => {
                 let sign = match relation {
                     Relation::AtLeast => "≥ ",
@@ -95,9 +95,9 @@ impl Judged<'_> {
                     Relation::Equals | Relation::Between => "",
                 };
                 let values = match expected {
-                    Expected::Number(value) => number(value),
-                    Expected::Numbers(values) => numbers(values),
-                    Expected::Truth(_) | Expected::Words(_) => String::new(),
+                    ExpectedValue::Number(value) => number(value),
+                    ExpectedValue::Numbers(values) => numbers(values),
+                    ExpectedValue::Truth(_) | ExpectedValue::Words(_) => String::new(),
                 };
                 format!("{sign}{values}{within}")
             }
@@ -110,25 +110,25 @@ impl Judged<'_> {
 pub(super) fn judge<'c>(
     claim: &'c Claim,
     expressions: &Expressions,
-    scope: &Scope,
+    scope: &ExpressionScope,
     date: &str,
-) -> Result<Judged<'c>, InputErrors> {
+) -> Result<ClaimJudgement<'c>, InputErrors> {
     let (Some(value), Some(expected), Some(relation)) =
         (&claim.value, &claim.limit.expected, claim.limit.relation)
     else {
-        return Ok(Judged::unjudged(claim));
+        return Ok(ClaimJudgement::unjudged(claim));
     };
     let of = |text: &str| expressions.value(text, scope).map_err(|cause| claim.refused(cause));
     let (value, error) = (of(value)?, claim.error.as_deref().map(of).transpose()?);
     let is_too_new = claim.limit.since.as_str() > date;
-    let judged = |verdict, value| Judged { claim, verdict, value, is_too_new };
-    let is = |holds: bool| if holds { Verdict::Reproduced } else { Verdict::NotReproduced };
+    let judged = |verdict, value| ClaimJudgement { claim, verdict, value, is_too_new };
+    let is = |holds: bool| if holds { ClaimVerdict::Reproduced } else { ClaimVerdict::NotReproduced };
     match expected {
-        Expected::Truth(truth) if value.kind() == ValueKind::Bool => {
+        ExpectedValue::Truth(truth) if value.kind() == ValueKind::Bool => {
             let said = if value.is_true() { "yes" } else { "no" };
             Ok(judged(is(value.is_true() == *truth), said.to_owned()))
         }
-        Expected::Words(words) if value.as_str().is_some() => {
+        ExpectedValue::Words(words) if value.as_str().is_some() => {
             Ok(judged(is(value.as_str() == Some(words)), value.to_string()))
         }
         _ => {
@@ -140,7 +140,7 @@ pub(super) fn judge<'c>(
                 return Err(claim.refused(format!("{} errors of {} values", errors.len(), values.len())));
             }
             let verdicts = values.iter().zip(&errors).zip(limits).map(|((v, e), ends)| verdict(*v, *e, ends));
-            let verdict = verdicts.fold(Verdict::Reproduced, worse);
+            let verdict = verdicts.fold(ClaimVerdict::Reproduced, worse);
             let said = values.iter().zip(&errors).map(|(value, error)| match *error > 0.0 {
                 // Cells without a value are read as NaN.
                 _ if value.is_nan() => "none".to_owned(),
@@ -153,27 +153,27 @@ pub(super) fn judge<'c>(
 }
 
 /// Verdict on a value, from the ends of the allowed range.
-fn verdict(value: f64, error: f64, [low, high]: [f64; 2]) -> Verdict {
+fn verdict(value: f64, error: f64, [low, high]: [f64; 2]) -> ClaimVerdict {
     match [value - error, value + error] {
-        [least, most] if least >= low && most <= high => Verdict::Reproduced,
-        [least, most] if most < low || least > high => Verdict::NotReproduced,
-        _ => Verdict::Undecided,
+        [least, most] if least >= low && most <= high => ClaimVerdict::Reproduced,
+        [least, most] if most < low || least > high => ClaimVerdict::NotReproduced,
+        _ => ClaimVerdict::Undecided,
     }
 }
 
 /// Verdict on two values together: one failure decides.
-fn worse(one: Verdict, other: Verdict) -> Verdict {
+fn worse(one: ClaimVerdict, other: ClaimVerdict) -> ClaimVerdict {
     match (one, other) {
-        (Verdict::NotReproduced, _) | (_, Verdict::NotReproduced) => Verdict::NotReproduced,
-        (Verdict::Undecided, _) | (_, Verdict::Undecided) => Verdict::Undecided,
-        _ => Verdict::Reproduced,
+        (ClaimVerdict::NotReproduced, _) | (_, ClaimVerdict::NotReproduced) => ClaimVerdict::NotReproduced,
+        (ClaimVerdict::Undecided, _) | (_, ClaimVerdict::Undecided) => ClaimVerdict::Undecided,
+        _ => ClaimVerdict::Reproduced,
     }
 }
 
 /// Lowest and highest allowed value of each of `count` values.
 fn limits(
-    limit: &Limit,
-    expected: &Expected,
+    limit: &ClaimLimit,
+    expected: &ExpectedValue,
     relation: Relation,
     count: usize,
 ) -> Result<Vec<[f64; 2]>, String> {
@@ -187,14 +187,16 @@ fn limits(
         }
     };
     match (expected, relation) {
-        (Expected::Numbers(range), Relation::Between) if range.len() == 2 => {
+        (ExpectedValue::Numbers(range), Relation::Between) if range.len() == 2 => {
             Ok(vec![[range[0], range[1]]; count])
         }
         (_, Relation::Between) => Err("`between` needs expected = [lowest, highest]".to_owned()),
-        (Expected::Number(expected), _) => Ok(vec![ends(*expected); count]),
-        (Expected::Numbers(all), _) if all.len() == count => Ok(all.iter().map(|one| ends(*one)).collect()),
-        (Expected::Numbers(all), _) => Err(format!("{} expected numbers for {count} values", all.len())),
-        (Expected::Truth(_) | Expected::Words(_), _) => Err("the value is a number".to_owned()),
+        (ExpectedValue::Number(expected), _) => Ok(vec![ends(*expected); count]),
+        (ExpectedValue::Numbers(all), _) if all.len() == count => {
+            Ok(all.iter().map(|one| ends(*one)).collect())
+        }
+        (ExpectedValue::Numbers(all), _) => Err(format!("{} expected numbers for {count} values", all.len())),
+        (ExpectedValue::Truth(_) | ExpectedValue::Words(_), _) => Err("the value is a number".to_owned()),
     }
 }
 
@@ -218,26 +220,26 @@ fn numbers(value: &Value) -> Result<Vec<f64>, String> {
 mod tests {
     use super::*;
     use crate::claims::file::read;
-    use crate::frame::Rows;
+    use crate::frame::FrameBuilder;
 
-    fn judged(lines: &str) -> Result<(Verdict, String, String), String> {
+    fn judged(lines: &str) -> Result<(ClaimVerdict, String, String), String> {
         let text = format!(
             "[[claim]]\nid = \"a\"\nsource = \"BP93\"\nplace = \"p\"\nitem = \"i\"\ntext = \"t\"\nreference = \"r\"\n\
              since = \"2026-11-26\"\n{lines}"
         );
-        let frame = Rows::of([(0.5, 0.2, "a"), (1.5, 0.1, "b")])
+        let frame = FrameBuilder::of([(0.5, 0.2, "a"), (1.5, 0.1, "b")])
             .text("name", |it| it.2)
-            .cell("x", |it| crate::frame::Cell::with_error(it.0, Some(it.1), 2))
+            .cell("x", |it| crate::frame::TableCell::with_error(it.0, Some(it.1), 2))
             .frame("t", "T");
         let claims = read("bp93.toml", &text).map_err(|cause| cause.to_string())?;
-        let judged = judge(&claims[0], &Expressions::new(), &Scope::of([frame]), "2026-11-26");
+        let judged = judge(&claims[0], &Expressions::new(), &ExpressionScope::of([frame]), "2026-11-26");
         let judged = judged.map_err(|cause| cause.to_string())?;
         Ok((judged.verdict, judged.value.clone(), judged.expected()))
     }
 
     #[test]
     fn a_verdict_follows_from_value_error_and_tolerance() {
-        use Verdict::{NotReproduced, Reproduced, Undecided};
+        use ClaimVerdict::{NotReproduced, Reproduced, Undecided};
         let a = "value = \"t.at(name='a').x\"\n";
         let with_error = "value = \"t.at(name='a').x\"\nerror = \"t.at(name='a').x_error\"\n";
         let both = "value = \"t.column('x')\"\nerror = \"t.column('x_error')\"\n";

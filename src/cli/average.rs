@@ -2,17 +2,19 @@
 
 use super::display::{UnitSystem, decimals, scene_of};
 use super::run_folder;
-use crate::console::{Common, Failure, print, print_json, warn};
-use crate::frame::{Frame, csv};
-use crate::report::{Cell, Rows, Table, terminal};
+use crate::console::{CommandFailure, Common, print, print_json, warn};
+use crate::frame::{ResultFrame, csv};
+use crate::report::{FormattedTable, FrameBuilder, TableCell, terminal};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use std::path::PathBuf;
-use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
+use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::{counted, significant, with_bar};
-use stripmine_physics::run::{Finished, Function, Number, Point, averages_of, function_of, functions_of};
+use stripmine_physics::run::{
+    FinishedRun, FunctionPoint, Number, StructureFunction, averages_of, function_of, functions_of,
+};
 use stripmine_physics::structure::{NAMES, observable};
 
 /// Prints the mean of every quantity of a run with its error
@@ -33,16 +35,16 @@ pub(super) struct AverageVerb {
 
 /// Document of `--json`.
 #[derive(Serialize)]
-struct Said<'a> {
+struct AveragesDocument<'a> {
     #[serde(flatten)]
-    averages: &'a Averages,
+    averages: &'a RunAverages,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    structure: &'a [Function],
+    structure: &'a [StructureFunction],
 }
 
 impl AverageVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let runs = self.runs.iter().map(|run| Finished::read(&run_folder(run), methods));
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
+        let runs = self.runs.iter().map(|run| FinishedRun::read(&run_folder(run), methods));
         let averages = averages_of(&runs.collect::<Result<Vec<_>, _>>()?)?;
         let folders: Vec<PathBuf> = self.runs.iter().map(|run| run_folder(run)).collect();
         let units = UnitSystem::of(folders.first().and_then(|run| scene_of(run)).as_ref());
@@ -61,12 +63,13 @@ impl AverageVerb {
         }
         let functions = functions_of(folders())?;
         if common.json {
-            return print_json(&Said { averages: &averages, structure: &functions });
+            return print_json(&AveragesDocument { averages: &averages, structure: &functions });
         }
         doubts(&functions);
         if self.csv {
             let mut bytes = vec![];
-            csv::write(&Frame::from(&table(&averages)), &mut bytes).map_err(Failure::writing("CSV"))?;
+            csv::write(&ResultFrame::from(&table(&averages)), &mut bytes)
+                .map_err(CommandFailure::writing("CSV"))?;
             return print(&String::from_utf8_lossy(&bytes));
         }
         print(&terminal::render(&means(&units.averages(&averages))))?;
@@ -78,42 +81,43 @@ impl AverageVerb {
 }
 
 /// Warns of every function whose result is doubtful.
-fn doubts(functions: &[Function]) {
-    for Function { name, doubt, .. } in functions {
+fn doubts(functions: &[StructureFunction]) {
+    for StructureFunction { name, doubt, .. } in functions {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
 }
 
 /// Table of a structure function, one row per point.
-fn of_function(function: &Function, units: &UnitSystem) -> Table {
+fn of_function(function: &StructureFunction, units: &UnitSystem) -> FormattedTable {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
         unit => format!("{name} ({})", units.symbol(unit)),
     };
-    let mut rows = Rows::of(&function.points);
+    let mut rows = FrameBuilder::of(&function.points);
     for (at, &over) in function.observable.over.iter().enumerate() {
-        rows = rows
-            .cell(with_unit(over), move |point| Cell::Number(point.over[at], decimals(point.over[at], 4)));
+        rows = rows.cell(with_unit(over), move |point| {
+            TableCell::Number(point.over[at], decimals(point.over[at], 4))
+        });
     }
-    rows.cell(with_unit(function.observable.value), |Point { mean, bar, .. }| {
-        Cell::Number(*mean, decimals_of_mean(*mean, *bar))
+    rows.cell(with_unit(function.observable.value), |FunctionPoint { mean, bar, .. }| {
+        TableCell::Number(*mean, decimals_of_mean(*mean, *bar))
     })
-    .cell("± 95 %", |point| Cell::Number(point.bar, decimals(point.bar, 2)))
+    .cell("± 95 %", |point| TableCell::Number(point.bar, decimals(point.bar, 2)))
     .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
 }
 
 /// Table of the characteristic numbers of structure functions, such as a peak height.
-fn of_structure(functions: &[Function], units: &UnitSystem) -> Table {
-    let of = |function: &'_ Function| -> Vec<(&'static str, Number)> {
+fn of_structure(functions: &[StructureFunction], units: &UnitSystem) -> FormattedTable {
+    let of = |function: &'_ StructureFunction| -> Vec<(&'static str, Number)> {
         function.headlines.iter().map(|number| (function.name, number.clone())).collect()
     };
     let headlines: Vec<(&str, Number)> = functions.iter().flat_map(of).collect();
     let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
-    Rows::of(&headlines)
+    FrameBuilder::of(&headlines)
         .text("structure", |(name, _)| *name)
         .text("number", |(_, number)| number.name)
-        .cell("mean", |(_, number)| Cell::Number(number.mean, decimals_of_mean(number.mean, number.bar)))
-        .cell("± 95 %", |(_, number)| Cell::Number(number.bar, decimals(number.bar, 2)))
+        .cell("mean", |(_, number)| TableCell::Number(number.mean, decimals_of_mean(number.mean, number.bar)))
+        .cell("± 95 %", |(_, number)| TableCell::Number(number.bar, decimals(number.bar, 2)))
         .text("unit", |(_, number)| units.symbol(number.unit))
         .table("structure", "Structure".to_owned())
         .note(format!(
@@ -123,11 +127,13 @@ fn of_structure(functions: &[Function], units: &UnitSystem) -> Table {
 }
 
 /// Table of the means for the terminal. Quantities without a mean are listed below it.
-fn means(averages: &Averages) -> Table {
+fn means(averages: &RunAverages) -> FormattedTable {
     let known: Vec<(&Average, &Estimate)> = averages
         .quantities
         .iter()
-        .filter_map(|it| if let Outcome::Mean(estimate) = &it.outcome { Some((it, estimate)) } else { None })
+        .filter_map(|it| {
+            if let AverageOutcome::Mean(estimate) = &it.outcome { Some((it, estimate)) } else { None }
+        })
         .collect();
     let listed = |heading: &str, words: fn(&Average) -> Option<String>| -> Option<String> {
         let names: Vec<String> = averages
@@ -139,68 +145,70 @@ fn means(averages: &Averages) -> Table {
     };
     let notes = [
         listed("Run too short (time needed)", |it| match &it.outcome {
-            Outcome::TooShort { enough_at, .. } => Some(format!(" ({})", significant(*enough_at, 2))),
+            AverageOutcome::TooShort { enough_at, .. } => Some(format!(" ({})", significant(*enough_at, 2))),
             _ => None,
         }),
         listed("Still changing", |it| match &it.outcome {
-            Outcome::Changing { first, last } => {
+            AverageOutcome::Changing { first, last } => {
                 Some(format!(" (from {} to {})", significant(*first, 3), significant(*last, 3)))
             }
             _ => None,
         }),
         listed("Largest deviation from the first value", |it| match &it.outcome {
-            Outcome::Kept { farthest, .. } => Some(format!(" {}", significant(*farthest, 2))),
+            AverageOutcome::Kept { farthest, .. } => Some(format!(" {}", significant(*farthest, 2))),
             _ => None,
         }),
         listed("Constant", |it| match &it.outcome {
-            Outcome::Constant { mean } => Some(format!(" {}", significant(*mean, 6))),
+            AverageOutcome::Constant { mean } => Some(format!(" {}", significant(*mean, 6))),
             _ => None,
         }),
-        listed("Undefined in some rows", |it| matches!(it.outcome, Outcome::Undefined).then(String::new)),
+        listed("Undefined in some rows", |it| {
+            matches!(it.outcome, AverageOutcome::Undefined).then(String::new)
+        }),
     ];
     let name = |it: &Average| match it.of {
         "rate" => format!("rate of {}", it.quantity),
         _ => it.quantity.to_owned(),
     };
-    Rows::of(&known)
+    FrameBuilder::of(&known)
         .text("quantity", |(it, _)| name(it))
         .text("mean ± 95 %", |(_, it)| with_bar(it.mean, it.bar))
         .text("unit", |(it, _)| it.unit.clone())
-        .cell("from time", |(_, it)| Cell::Number(it.equilibrated_at, decimals(it.equilibrated_at, 3)))
-        .cell("samples", |(_, it)| Cell::Count(it.independent_samples as u64))
+        .cell("from time", |(_, it)| TableCell::Number(it.equilibrated_at, decimals(it.equilibrated_at, 3)))
+        .cell("samples", |(_, it)| TableCell::Count(it.independent_samples as u64))
         .table("averages", format!("Means of {}, {} rows", counted(averages.runs, "run", "runs"), averages.rows))
         .notes(notes.into_iter().flatten())
         .note("Samples are independent; from time: end of the transient. --csv has standard errors and correlation times.")
 }
 
 /// Full table of the averages, a row for each quantity.
-fn table(averages: &Averages) -> Table {
+fn table(averages: &RunAverages) -> FormattedTable {
     let runs = counted(averages.runs, "run", "runs");
     let number = |of: fn(&Estimate) -> f64| {
         move |average: &&Average| match &average.outcome {
-            Outcome::Mean(estimate) => Cell::Number(of(estimate), decimals(of(estimate), 3)),
-            _ => Cell::Nothing,
+            AverageOutcome::Mean(estimate) => TableCell::Number(of(estimate), decimals(of(estimate), 3)),
+            _ => TableCell::Nothing,
         }
     };
-    Rows::of(&averages.quantities)
+    FrameBuilder::of(&averages.quantities)
         .text("quantity", |it| it.quantity)
         .cell("mean", |it| match &it.outcome {
-            Outcome::Mean(Estimate { mean, bar, .. }) => Cell::Number(*mean, decimals(*bar, 2)),
-            Outcome::Constant { mean } => Cell::Number(*mean, decimals(*mean, 6)),
-            _ => Cell::Nothing,
+            AverageOutcome::Mean(Estimate { mean, bar, .. }) => TableCell::Number(*mean, decimals(*bar, 2)),
+            AverageOutcome::Constant { mean } => TableCell::Number(*mean, decimals(*mean, 6)),
+            _ => TableCell::Nothing,
         })
         .cell("± 95 %", |it| match &it.outcome {
-            Outcome::Mean(Estimate { bar, .. }) => Cell::Number(*bar, decimals(*bar, 2)),
-            _ => Cell::Nothing,
+            AverageOutcome::Mean(Estimate { bar, .. }) => TableCell::Number(*bar, decimals(*bar, 2)),
+            _ => TableCell::Nothing,
         })
         .text("unit", |it| it.unit.clone())
         .cell("standard error", number(|it| it.standard_error))
         .cell("correlation time", number(|it| it.correlation_time))
         .cell("from time", number(|it| it.equilibrated_at))
         .cell("independent samples", |it| match &it.outcome {
-            Outcome::Mean(Estimate { independent_samples: samples, .. })
-            | Outcome::TooShort { independent_samples: samples, .. } => Cell::Number(*samples, 0),
-            _ => Cell::Nothing,
+            AverageOutcome::Mean(Estimate { independent_samples: samples, .. })
+            | AverageOutcome::TooShort { independent_samples: samples, .. } => TableCell::Number(*samples, 0),
+            _ => TableCell::Nothing,
         })
         .text("remark", |it| remark(it))
         .table("averages", format!("Averages of {runs}, {} rows", averages.rows))
@@ -214,20 +222,20 @@ fn decimals_of_mean(mean: f64, bar: f64) -> usize {
 
 fn remark(average: &Average) -> String {
     match &average.outcome {
-        Outcome::Mean(_) if average.of == "values" => String::new(),
-        Outcome::Mean(_) => match average.of {
+        AverageOutcome::Mean(_) if average.of == "values" => String::new(),
+        AverageOutcome::Mean(_) => match average.of {
             "rate" => "rate of the count".to_owned(),
             _ => "mean over intervals between rows".to_owned(),
         },
-        Outcome::Constant { .. } => "constant".to_owned(),
-        Outcome::Undefined => "undefined in some rows".to_owned(),
-        Outcome::TooShort { enough_at, .. } => {
+        AverageOutcome::Constant { .. } => "constant".to_owned(),
+        AverageOutcome::Undefined => "undefined in some rows".to_owned(),
+        AverageOutcome::TooShort { enough_at, .. } => {
             format!("run too short, needs time {}", significant(*enough_at, 2))
         }
-        Outcome::Changing { first, last } => {
+        AverageOutcome::Changing { first, last } => {
             format!("still changing, from {} to {}", significant(*first, 3), significant(*last, 3))
         }
-        Outcome::Kept { first, farthest, .. } => {
+        AverageOutcome::Kept { first, farthest, .. } => {
             format!("deviates by at most {} from {}", significant(*farthest, 2), significant(*first, 3))
         }
     }

@@ -3,18 +3,18 @@
 use super::display::decimals;
 use super::processes;
 use super::run::{MOST_RANKS, threads_of_ranks};
-use crate::console::{Common, Failure, clear_progress, count, print, print_json, progress};
+use crate::console::{CommandFailure, Common, clear_progress, count, print, print_json, progress};
 use crate::provenance::built;
-use crate::report::{Cell, Rows, Table, terminal};
-use crate::study::scaling::{self, OfThreads, Scaling, scaling};
+use crate::report::{FormattedTable, FrameBuilder, TableCell, terminal};
+use crate::study::scaling::{self, Scaling, ThreadResult, scaling};
 use clap::{Arg, ArgAction, ArgMatches, Args, value_parser};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, throughput};
-use stripmine_physics::method::{Bench, BenchOption, Entry, Methods, Purpose};
+use stripmine_physics::method::throughput::{MeasurementError, Throughput, ThroughputRequest, throughput};
+use stripmine_physics::method::{Bench, BenchOption, MethodEntry, Methods, StartPurpose};
 use stripmine_physics::number::{counted, significant};
-use stripmine_physics::ranks::{self, Crew};
-use stripmine_physics::scene::{Reason, SceneErrors, Values};
+use stripmine_physics::ranks::{self, RankBackend};
+use stripmine_physics::scene::{MistakeKind, SceneErrors, SceneValues};
 
 /// Measures throughput: particle steps, or events, a second
 #[derive(Args)]
@@ -34,7 +34,7 @@ pub(super) struct BenchVerb {
 
 /// Kind of value that follows an option.
 #[derive(Clone, Copy)]
-enum Takes {
+enum OptionKind {
     Nothing,
     /// Whole number, 1 or more.
     Count,
@@ -43,11 +43,11 @@ enum Takes {
 }
 
 macro_rules! options {
-    ($($takes:ident $name:literal $help:literal;)*) => { &[$(($name, Takes::$takes, $help)),*] };
+    ($($takes:ident $name:literal $help:literal;)*) => { &[$(($name, OptionKind::$takes, $help)),*] };
 }
 
 /// Options of all benchmarks: kind of value, name and help.
-const OPTIONS: &[(&str, Takes, &str)] = options! {
+const OPTIONS: &[(&str, OptionKind, &str)] = options! {
     Count "particles" "Least number of particles";
     Number "packing-fraction" "Area of the discs over area of the box";
     Word "precision" "Precision of state and forces: f64, f32 or mixed";
@@ -68,9 +68,9 @@ const OPTIONS: &[(&str, Takes, &str)] = options! {
 };
 
 /// Kind of value and help of an option; a word for options of methods unknown to this program.
-fn described(option: &BenchOption) -> (Takes, &'static str) {
+fn described(option: &BenchOption) -> (OptionKind, &'static str) {
     let known = OPTIONS.iter().find(|(name, ..)| *name == option.name);
-    known.map_or((Takes::Word, "A value of the scene"), |&(_, takes, help)| (takes, help))
+    known.map_or((OptionKind::Word, "A value of the scene"), |&(_, takes, help)| (takes, help))
 }
 
 /// Options of all benchmarks, each once.
@@ -87,10 +87,10 @@ pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
         let (takes, help) = described(option);
         let argument = Arg::new(option.name).long(option.name).value_name(value).help(help);
         match takes {
-            Takes::Nothing => argument.action(ArgAction::SetTrue),
-            Takes::Count => argument.value_parser(count),
-            Takes::Number => argument.value_parser(value_parser!(f64)).allow_negative_numbers(true),
-            Takes::Word => argument,
+            OptionKind::Nothing => argument.action(ArgAction::SetTrue),
+            OptionKind::Count => argument.value_parser(count),
+            OptionKind::Number => argument.value_parser(value_parser!(f64)).allow_negative_numbers(true),
+            OptionKind::Word => argument,
         }
     })
 }
@@ -98,15 +98,15 @@ pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
 /// Value of an option as text, if it was given.
 fn value_of(option: &BenchOption, given: &ArgMatches) -> Option<String> {
     match described(option).0 {
-        Takes::Nothing => given.get_flag(option.name).then(String::new),
-        Takes::Count => given.get_one::<u64>(option.name).map(u64::to_string),
-        Takes::Number => given.get_one::<f64>(option.name).map(f64::to_string),
-        Takes::Word => given.get_one::<String>(option.name).cloned(),
+        OptionKind::Nothing => given.get_flag(option.name).then(String::new),
+        OptionKind::Count => given.get_one::<u64>(option.name).map(u64::to_string),
+        OptionKind::Number => given.get_one::<f64>(option.name).map(f64::to_string),
+        OptionKind::Word => given.get_one::<String>(option.name).cloned(),
     }
 }
 
 /// Override of the scene, with the option that caused it.
-struct Override {
+struct OptionOverride {
     text: String,
     option: String,
 }
@@ -118,35 +118,40 @@ impl BenchVerb {
         bench: &Bench,
         given: &ArgMatches,
         methods: Methods,
-    ) -> Result<Vec<Override>, Failure> {
-        let mut all: Vec<Override> = bench
+    ) -> Result<Vec<OptionOverride>, CommandFailure> {
+        let mut all: Vec<OptionOverride> = bench
             .overrides
             .iter()
-            .map(|text| Override { text: (*text).to_owned(), option: bench.name.to_owned() })
+            .map(|text| OptionOverride { text: (*text).to_owned(), option: bench.name.to_owned() })
             .collect();
         let has = |name: &str| bench.options.iter().any(|known| known.name == name);
         if let Some(foreign) = options(methods).find(|it| !has(it.name) && value_of(it, given).is_some()) {
-            return Err(Failure::NoSuchOption { bench: bench.name, option: foreign.name });
+            return Err(CommandFailure::NoSuchOption { bench: bench.name, option: foreign.name });
         }
         for known in bench.options {
             let default = bench.defaults.iter().find(|(name, _)| *name == known.name);
             let default = default.map(|(_, value)| (*value).to_owned());
             let Some(value) = value_of(known, given).or(default) else { continue };
             if !known.values.is_empty() && !known.values.contains(&value.as_str()) {
-                return Err(Failure::NoSuchValue { option: known.name, value, values: known.values });
+                return Err(CommandFailure::NoSuchValue { option: known.name, value, values: known.values });
             }
             let option = format!("--{} {value}", known.name).trim_end().to_owned();
             let overrides = (known.overrides)(&value).into_iter();
-            all.extend(overrides.map(|text| Override { text, option: option.clone() }));
+            all.extend(overrides.map(|text| OptionOverride { text, option: option.clone() }));
         }
         Ok(all)
     }
 
-    pub(super) fn run(&self, matches: &ArgMatches, common: &Common, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(
+        &self,
+        matches: &ArgMatches,
+        common: &Common,
+        methods: Methods,
+    ) -> Result<(), CommandFailure> {
         let benches = methods.iter().flat_map(|&entry| entry.benches.iter().map(move |it| (entry, it)));
         let found = benches.into_iter().find(|(_, bench)| bench.name == self.what);
         let Some((entry, bench)) = found else {
-            return Err(Failure::NoSuchOption { bench: "bench", option: "what" });
+            return Err(CommandFailure::NoSuchOption { bench: "bench", option: "what" });
         };
         let given = self.overrides(bench, matches, methods)?;
         let is_of_several = common.threads.len() > 1 || self.ranks.len() > 1;
@@ -156,9 +161,9 @@ impl BenchVerb {
         if is_of_several {
             return self.on_several(entry, bench, &given, common);
         }
-        let Crew::Processes(join) = common.crew else {
+        let RankBackend::Processes(join) = common.crew else {
             let ranks = self.ranks.first().copied().map_or(1, usize::from);
-            return self.on_one((entry, bench, &given), Crew::Threads(ranks), common);
+            return self.on_one((entry, bench, &given), RankBackend::Threads(ranks), common);
         };
         if !self.ranks.is_empty() {
             return Err(processes::ranks_twice());
@@ -168,17 +173,17 @@ impl BenchVerb {
         let same = format!("bench\n{:?}\n{}", built(), measurement.prepared.scene);
         let first = || self.on_one((entry, bench, &given), common.crew, common);
         processes::together(join, &same, first, || {
-            processes::serve(common.crew, || measurement.prepared.start(Purpose::Measurement).map(drop));
+            processes::serve(common.crew, || measurement.prepared.start(StartPurpose::Measurement).map(drop));
         })
     }
 
     /// Measures on one crew of ranks.
     fn on_one(
         &self,
-        (entry, bench, given): (&'static Entry, &'static Bench, &[Override]),
-        crew: Crew,
+        (entry, bench, given): (&'static MethodEntry, &'static Bench, &[OptionOverride]),
+        crew: RankBackend,
         common: &Common,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CommandFailure> {
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let result = ranks::over(crew, || throughput(self.measurement(entry, bench, given)?, show));
@@ -189,33 +194,35 @@ impl BenchVerb {
 
     fn measurement(
         &self,
-        entry: &'static Entry,
+        entry: &'static MethodEntry,
         bench: &'static Bench,
-        given: &[Override],
-    ) -> Result<Measurement, MeasurementError> {
+        given: &[OptionOverride],
+    ) -> Result<ThroughputRequest, MeasurementError> {
         let overrides: Vec<String> = given.iter().map(|given| given.text.clone()).collect();
-        let values = Values::load(bench.preset, &overrides, &[entry.vocabulary])?;
+        let values = SceneValues::load(bench.preset, &overrides, &[entry.vocabulary])?;
         let prepared = (entry.prepare)(values)?;
         let steps = self.steps.unwrap_or_else(|| (bench.amount)(prepared.particles().grain_count() as u64));
         let repeats = self.repeats.into();
-        Ok(Measurement { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
+        Ok(ThroughputRequest { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
     }
 
     /// Measures on several numbers of ranks and threads in turn.
     fn on_several(
         &self,
-        entry: &'static Entry,
+        entry: &'static MethodEntry,
         bench: &'static Bench,
-        given: &[Override],
+        given: &[OptionOverride],
         common: &Common,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CommandFailure> {
         let or_one = |given: &[u16], default: usize| -> Vec<usize> {
             let given = given.iter().copied().map(usize::from);
             if given.len() == 0 { vec![default] } else { given.collect() }
         };
         let threads = or_one(&common.threads, 1);
-        let of_ranks = |ranks: usize| threads.iter().map(move |&threads| scaling::Crew { ranks, threads });
-        let crews: Vec<scaling::Crew> = or_one(&self.ranks, 1).into_iter().flat_map(of_ranks).collect();
+        let of_ranks =
+            |ranks: usize| threads.iter().map(move |&threads| scaling::ThreadLayout { ranks, threads });
+        let crews: Vec<scaling::ThreadLayout> =
+            or_one(&self.ranks, 1).into_iter().flat_map(of_ranks).collect();
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let found = scaling(&|| self.measurement(entry, bench, given), &crews, show);
@@ -231,8 +238,8 @@ impl BenchVerb {
 /// JSON of a measurement on several numbers of ranks and threads.
 fn for_programs(found: &Scaling) -> Value {
     let Scaling { what, particles, steps, repeats, settings, same_bits, by_threads, phases } = found;
-    let of_threads = |it: &OfThreads| {
-        let scaling::Crew { ranks, threads } = it.crew;
+    let of_threads = |it: &ThreadResult| {
+        let scaling::ThreadLayout { ranks, threads } = it.crew;
         json!({ "ranks": ranks, "threads": threads, "rate": it.rate, "gain": it.gain })
     };
     let of_phase = |it: &scaling::Phase| {
@@ -255,13 +262,13 @@ fn for_programs(found: &Scaling) -> Value {
 const FORESEEN: [usize; 2] = [8, 16];
 
 /// Table of rate and gain for each number of threads.
-fn by_threads(found: &Scaling) -> Table {
+fn by_threads(found: &Scaling) -> FormattedTable {
     let bits = if found.same_bits { "same bits on all" } else { "bits DIFFER" };
     let foreseen = FORESEEN.map(|threads| {
         let gain = found.foreseen(threads).map_or("–".to_owned(), |gain| significant(gain, 3));
         format!("{gain} times on {threads} threads")
     });
-    Rows::of(&found.by_threads)
+    FrameBuilder::of(&found.by_threads)
         .count("ranks", |it| it.crew.ranks)
         .count("threads of each", |it| it.crew.threads)
         .cell("million a second, best", |it| rounded(1e-6 * it.rate[0], 4))
@@ -282,14 +289,15 @@ fn by_threads(found: &Scaling) -> Table {
 }
 
 /// Number with some significant digits.
-fn rounded(value: f64, digits: i32) -> Cell {
-    Cell::Number(value, decimals(value, digits))
+fn rounded(value: f64, digits: i32) -> TableCell {
+    TableCell::Number(value, decimals(value, digits))
 }
 
 /// Table of the time of each phase, and of the part of it that does not scale.
-fn by_phases(found: &Scaling) -> Table {
-    let mut rows = Rows::of(&found.phases).text("phase", |it| it.name.clone());
-    for (at, OfThreads { crew: scaling::Crew { ranks, threads }, .. }) in found.by_threads.iter().enumerate()
+fn by_phases(found: &Scaling) -> FormattedTable {
+    let mut rows = FrameBuilder::of(&found.phases).text("phase", |it| it.name.clone());
+    for (at, ThreadResult { crew: scaling::ThreadLayout { ranks, threads }, .. }) in
+        found.by_threads.iter().enumerate()
     {
         rows = rows.cell(format!("ns, {ranks} × {threads}"), move |it| rounded(it.nanoseconds[at], 3));
     }
@@ -300,17 +308,17 @@ fn by_phases(found: &Scaling) -> Table {
 }
 
 /// Failure of a measurement; mistakes of the scene are reported as mistakes of the options.
-fn refused(error: MeasurementError, given: &[Override]) -> Failure {
+fn refused(error: MeasurementError, given: &[OptionOverride]) -> CommandFailure {
     match error {
-        MeasurementError::Scene(mistakes) if mistakes.0.iter().all(|it| it.reason != Reason::Memory) => {
-            Failure::Options(in_options(mistakes, given))
+        MeasurementError::Scene(mistakes) if mistakes.0.iter().all(|it| it.reason != MistakeKind::Memory) => {
+            CommandFailure::Options(in_options(mistakes, given))
         }
         error => error.into(),
     }
 }
 
 /// Replaces the location of each mistake by the option that caused it.
-fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[Override]) -> SceneErrors {
+fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[OptionOverride]) -> SceneErrors {
     for mistake in &mut mistakes {
         let option = given.iter().find(|given| mistake.file == format!("--set {}", given.text));
         if let Some(given) = option {

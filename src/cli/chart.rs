@@ -2,24 +2,24 @@
 
 use super::explain::{failed, width};
 use super::processes;
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress, say, warn};
 use crate::model::machines;
 use crate::provenance::{Provenance, built};
-use crate::results::Made;
+use crate::results::FinishedItem;
 use crate::results::Progress;
-use crate::results::{Folder, Journal, Team};
-use crate::study::explain::{Target, accuracy};
-use crate::study::stability::{self, Over, stability};
-use crate::study::trial::{Stopwatch, Trial};
+use crate::results::{Folder, Journal, ProcessTeam};
+use crate::study::explain::{PlanTarget, accuracy};
+use crate::study::stability::{self, VariedRange, stability};
+use crate::study::trial::{Stopwatch, TrialControl};
 use crate::study::work_precision::{self, work_precision};
-use crate::study::{Case, Subject};
+use crate::study::{StudyCase, Subject};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::counted;
 use stripmine_physics::quoted;
-use stripmine_physics::ranks::Crew;
+use stripmine_physics::ranks::RankBackend;
 use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
@@ -151,7 +151,7 @@ fn part(text: &str) -> Result<f64, String> {
 }
 
 impl ChartVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         match &self.what {
             Study::Accuracy(verb) => verb.run(common, methods),
             Study::WorkPrecision(verb) => verb.run(common, methods),
@@ -161,8 +161,8 @@ impl ChartVerb {
 }
 
 impl WorkPrecisionVerb {
-    fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let case = Case::load(&self.scene, &self.overrides, methods)?;
+    fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
+        let case = StudyCase::load(&self.scene, &self.overrides, methods)?;
         if self.quantity.is_some() || case.entry.trials.is_none_or(|trials| !trials.has_trajectories) {
             return AccuracyVerb {
                 scene: self.scene.clone(),
@@ -180,8 +180,8 @@ impl WorkPrecisionVerb {
         let named = machine.as_ref().map_or("", |machine| machine.title());
         let options = format!("budget {} repeats {} machine {named}", self.budget, self.repeats);
         let (budget, repeats) = (f64::from(self.budget), self.repeats.into());
-        let effort = work_precision::Effort { budget, repeats, phases: PHASES, machine };
-        let place = Place { name: "work-precision", scene: &self.scene, out: self.out.as_deref() };
+        let effort = work_precision::DiagramEffort { budget, repeats, phases: PHASES, machine };
+        let place = StudyDestination { name: "work-precision", scene: &self.scene, out: self.out.as_deref() };
         place.study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
             let data = work_precision(&subject, &effort, trial, journal, progress)?;
             Ok(work_precision::made(&[(stem, data)]))
@@ -190,20 +190,20 @@ impl WorkPrecisionVerb {
 }
 
 impl AccuracyVerb {
-    fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         // The choice of the next trial depends on measured times, so the first process makes all trials.
         if processes::rank(common.crew) > 0 {
             return Ok(());
         }
-        let case = Case::load(&self.scene, &self.overrides, methods)?;
-        let target = Target::of(&case, self.quantity.as_deref(), self.error);
+        let case = StudyCase::load(&self.scene, &self.overrides, methods)?;
+        let target = PlanTarget::of(&case, self.quantity.as_deref(), self.error);
         let target = target.and_then(|target| target.over(self.window.as_deref())).map_err(failed)?;
-        let place = Place { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
+        let place = StudyDestination { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
         let options =
             format!("{} {:?} {:?} budget {}", target.quantity.name, self.error, target.window, self.budget);
-        place.study((common, Crew::One), &case, &options, |_, journal, progress, stem| {
+        place.study((common, RankBackend::One), &case, &options, |_, journal, progress, stem| {
             let seconds = f64::from(self.budget) / rayon::current_num_threads() as f64;
-            let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
+            let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::asked() };
             let tell = |share: f64| progress(share);
             let shown: (&str, &dyn Fn(f64), &Journal) = (&stem, &tell, journal);
             accuracy::accuracy(&case, &target, seconds, trial, shown).map_err(failed)
@@ -212,11 +212,11 @@ impl AccuracyVerb {
 }
 
 impl StabilityVerb {
-    fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         let subject = Subject::load(&self.scene, &self.overrides, methods)?;
         let range = self.range.as_ref().map(|ends| [ends[0], ends[1]]);
-        let over = Over::of(&subject, self.over.as_deref(), range)?;
-        let effort = stability::Effort {
+        let over = VariedRange::of(&subject, self.over.as_deref(), range)?;
+        let effort = stability::MapEffort {
             budget: f64::from(self.budget),
             size: self.size.into(),
             seeds: self.seeds.into(),
@@ -231,7 +231,7 @@ impl StabilityVerb {
             self.tolerance,
             self.budget
         );
-        let place = Place { name: "stability", scene: &self.scene, out: self.out.as_deref() };
+        let place = StudyDestination { name: "stability", scene: &self.scene, out: self.out.as_deref() };
         place.study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
             let data = stability(&subject, over, &effort, trial, journal, progress)?;
             Ok(stability::made(&[(stem, data)]))
@@ -240,7 +240,13 @@ impl StabilityVerb {
 }
 
 /// Writes the result of a study and prints it.
-fn written(common: &Common, folder: &Folder, name: &str, made: &Made, begun: Instant) -> Result<(), Failure> {
+fn written(
+    common: &Common,
+    folder: &Folder,
+    name: &str,
+    made: &FinishedItem,
+    begun: Instant,
+) -> Result<(), CommandFailure> {
     let provenance = Provenance::here(common.command.clone(), begun.elapsed().as_secs_f64());
     let (path, section) = signals::whole(|| {
         let written = folder.write(name, made, &provenance)?;
@@ -257,7 +263,7 @@ fn written(common: &Common, folder: &Folder, name: &str, made: &Made, begun: Ins
 }
 
 /// Destination of the results of a study.
-struct Place<'p> {
+struct StudyDestination<'p> {
     /// Name of the study.
     name: &'static str,
     /// The scene as named on the command line.
@@ -266,13 +272,13 @@ struct Place<'p> {
     out: Option<&'p Path>,
 }
 
-impl Place<'_> {
+impl StudyDestination<'_> {
     fn out(&self, stem: &str) -> PathBuf {
         self.out.map_or_else(|| PathBuf::from(format!("{stem}.{}", self.name)), Path::to_owned)
     }
 
     /// Opens the folder, before any work is done; returns it with the scene's stem.
-    fn folder(&self) -> Result<(Folder, String), Failure> {
+    fn folder(&self) -> Result<(Folder, String), CommandFailure> {
         let stem = self.stem();
         Ok((Folder::open(&self.out(&stem), &[self.name], true)?, stem))
     }
@@ -284,18 +290,23 @@ impl Place<'_> {
     /// Runs a study, resuming from the finished runs in its folder.
     fn study(
         &self,
-        (common, crew): (&Common, Crew),
-        case: &Case,
+        (common, crew): (&Common, RankBackend),
+        case: &StudyCase,
         options: &str,
-        make: impl FnOnce(Trial<'_>, &Journal, Progress<'_>, String) -> Result<Made, Failure>,
-    ) -> Result<(), Failure> {
-        if let Crew::Processes(join) = crew {
+        make: impl FnOnce(
+            TrialControl<'_>,
+            &Journal,
+            Progress<'_>,
+            String,
+        ) -> Result<FinishedItem, CommandFailure>,
+    ) -> Result<(), CommandFailure> {
+        if let RankBackend::Processes(join) = crew {
             let same = format!("{}\n{:?}\n{:?}", common.command, built(), case.identity(self.name, options));
             processes::begin(join().as_ref(), &same)?;
         }
-        let team = Team::of(crew);
+        let team = ProcessTeam::of(crew);
         // The first of several processes writes the results and reports progress.
-        let is_first = team.as_ref().is_none_or(Team::is_first);
+        let is_first = team.as_ref().is_none_or(ProcessTeam::is_first);
         let (folder, stem) = if is_first {
             self.folder().map(|(folder, stem)| (Some(folder), stem))?
         } else {
@@ -311,7 +322,7 @@ impl Place<'_> {
         let bar = progress(common, self.name);
         let start = Instant::now();
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let trial = Trial { watch: &Stopwatch::processor(), stop: signals::asked() };
+        let trial = TrialControl { watch: &Stopwatch::processor(), stop: signals::asked() };
         let made = make(trial, &journal, &show, stem)?;
         folder.map_or(Ok(()), |folder| written(common, &folder, self.name, &made, start))
     }

@@ -1,14 +1,14 @@
 //! `stripmine compare`: runs one scene in two configurations and compares the trajectories.
 
-use crate::console::{Common, Failure, print, print_json};
-use crate::report::Rows;
+use crate::console::{CommandFailure, Common, print, print_json};
+use crate::report::FrameBuilder;
 use crate::report::terminal;
 use clap::Args;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
-use stripmine_physics::method::{Methods, Prepared, Purpose, Simulation, Until, load};
+use stripmine_physics::method::{Methods, Prepared, Simulation, StartPurpose, Until, load};
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::SceneErrors;
@@ -33,7 +33,7 @@ const PARTS: u32 = 16;
 
 /// Differences of the two runs at one time.
 #[derive(Serialize)]
-struct Look {
+struct TrajectoryDifference {
     /// Clock of the first run.
     steps: u64,
     events: u64,
@@ -56,12 +56,12 @@ struct Comparison {
     same_bits: bool,
     /// Index of the first sample with a difference.
     first_difference: Option<usize>,
-    looks: Vec<Look>,
+    looks: Vec<TrajectoryDifference>,
 }
 
 impl CompareVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let read = |more: &[String]| -> Result<Prepared, Failure> {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
+        let read = |more: &[String]| -> Result<Prepared, CommandFailure> {
             let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
             let read = load(&self.scene, &overrides, methods);
             let (prepared, _) = read.map_err(|mistakes| of_against(mistakes, more))?;
@@ -69,7 +69,7 @@ impl CompareVerb {
         };
         let (prepared, against) = (read(&[])?, read(&self.against)?);
         prepared.memory.clone().beside(&against.memory).fits(&self.scene)?;
-        let (mut first, mut second) = (prepared.start(Purpose::Run)?, against.start(Purpose::Run)?);
+        let (mut first, mut second) = (prepared.start(StartPurpose::Run)?, against.start(StartPurpose::Run)?);
         let (until, domain) = (prepared.schedule.until, prepared.domain);
         let mut looks = vec![look(&*first, &*second, &domain)];
         for part in (0..=PARTS).rev() {
@@ -111,11 +111,11 @@ fn share(until: Until, part: u32) -> Until {
     }
 }
 
-fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> Look {
+fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> TrajectoryDifference {
     let (one, other): (Particles, Particles) = (first.particles(), second.particles());
     let by_id: HashMap<u32, _> = other.all().iter().map(|particle| (particle.id, particle)).collect();
     let clock = first.clock();
-    let mut seen = Look {
+    let mut seen = TrajectoryDifference {
         steps: clock.steps,
         events: clock.events,
         time: clock.time,
@@ -164,7 +164,7 @@ fn text(scene: &str, comparison: &Comparison) -> String {
     let has_events = looks.iter().any(|look| look.events > 0);
     let unit = if has_events { "events" } else { "steps" };
     terminal::render(
-        &Rows::of(looks)
+        &FrameBuilder::of(looks)
             .count(unit, |look| if has_events { look.events } else { look.steps })
             .text("time", |look| significant(look.time, 6))
             .text("same bits", |look| if look.same_bits { "yes" } else { "no" })

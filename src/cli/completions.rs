@@ -1,7 +1,7 @@
 //! `stripmine completions`: completion scripts for shells.
 
 use super::{command, scene};
-use crate::console::{Failure, print};
+use crate::console::{CommandFailure, print};
 use crate::model::machines;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Command};
@@ -17,7 +17,7 @@ pub(super) struct Completions {
 }
 
 impl Completions {
-    pub(super) fn run(&self, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, methods: Methods) -> Result<(), CommandFailure> {
         let mut text = Vec::new();
         generate(self.shell, &mut completed(command(methods), methods), "stripmine", &mut text);
         print(&String::from_utf8_lossy(&text))

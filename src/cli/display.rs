@@ -1,7 +1,7 @@
 //! Numbers and units as the terminal and the pictures show them.
 
 use std::path::Path;
-use stripmine_physics::averages::Averages;
+use stripmine_physics::averages::RunAverages;
 use stripmine_physics::io::regular_file;
 use stripmine_physics::quoted::quoted;
 
@@ -52,7 +52,7 @@ impl UnitSystem {
     }
 
     /// Averages with the symbols of this system.
-    pub(super) fn averages(&self, averages: &Averages) -> Averages {
+    pub(super) fn averages(&self, averages: &RunAverages) -> RunAverages {
         let mut averages = averages.clone();
         averages.quantities.iter_mut().for_each(|average| average.unit = self.symbol(&average.unit));
         averages

@@ -1,25 +1,26 @@
 //! `stripmine explain`: finds the cheapest configuration, step and run length for a target error.
 
 use super::display::decimals;
-use crate::console::{Common, Failure, clear_progress, print, print_json, say, warn};
-use crate::report::{Cell, Rows, terminal};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, say, warn};
+use crate::report::{FrameBuilder, TableCell, terminal};
 use crate::study::explain::{
-    ExplainError, Kept, KeptError, LIMIT, Plan, SECONDS, Target, explain, page, seconds, with_unit,
+    ExplainError, LIMIT, PlanCache, PlanCacheError, PlanTarget, RunPlan, SECONDS, explain, page, seconds,
+    with_unit,
 };
-use crate::study::trial::{Sample, Span, Stopwatch, Trial};
-use crate::study::{Case, StudyError};
+use crate::study::trial::{SampleSpan, Stopwatch, TrialControl, TrialSample};
+use crate::study::{StudyCase, StudyError};
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use stripmine_physics::averages::Outcome;
+use stripmine_physics::averages::AverageOutcome;
 use stripmine_physics::io::replace::{may_put, put, try_beside};
 use stripmine_physics::memory::peak;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::{counted, significant};
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Width;
 use stripmine_physics::signals;
 
@@ -81,8 +82,8 @@ pub(super) struct ExplainVerb {
 struct LongRun(f64);
 
 impl Reported for LongRun {
-    fn class(&self) -> Class {
-        Class::Usage
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Usage
     }
 }
 
@@ -105,7 +106,7 @@ pub(super) fn width(text: &str) -> Result<Width, String> {
 
 /// Estimate of the plan compared with the run.
 #[derive(Clone, Debug, Serialize)]
-struct Compared {
+struct EstimateCheck {
     what: String,
     estimated: f64,
     actual: f64,
@@ -118,11 +119,11 @@ struct Compared {
 
 /// Document of `--json`.
 #[derive(Serialize)]
-struct Said {
+struct PlanDocument {
     #[serde(flatten)]
-    plan: Plan,
+    plan: RunPlan,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    analyzed: Vec<Compared>,
+    analyzed: Vec<EstimateCheck>,
     /// Reason for which the executed run ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     cut_off: Option<String>,
@@ -131,13 +132,13 @@ struct Said {
 /// Result of executing a plan.
 #[derive(Default)]
 struct Analysis {
-    rows: Vec<Compared>,
+    rows: Vec<EstimateCheck>,
     cut_off: Option<String>,
 }
 
 impl ExplainVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let kept = Kept::here();
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
+        let kept = PlanCache::here();
         if self.forget {
             let count = kept.forget().map_err(failed)?;
             print(&format!("removed {}\n", counted(count, "cached measurement", "cached measurements")))?;
@@ -145,9 +146,9 @@ impl ExplainVerb {
         let Some(scene) = &self.scene else { return Ok(()) };
         // Checked before any trial runs.
         self.may_write()?;
-        let case = Case::load(scene, &self.overrides, methods)?;
-        let target = Target::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
-        let target = Target { within: self.within, limit: self.limit.unwrap_or(LIMIT), ..target };
+        let case = StudyCase::load(scene, &self.overrides, methods)?;
+        let target = PlanTarget::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
+        let target = PlanTarget { within: self.within, limit: self.limit.unwrap_or(LIMIT), ..target };
         let target = target.over(self.window.as_deref()).map_err(failed)?;
         let seconds = match (self.estimate, self.patient) {
             (true, _) => 0.0,
@@ -157,12 +158,12 @@ impl ExplainVerb {
         if !common.quiet && seconds > 0.0 {
             say(format_args!("running trials for up to {seconds} s (cached trials are reused)"));
         }
-        let notice = |error: &KeptError| {
+        let notice = |error: &PlanCacheError| {
             if !common.quiet {
                 warn(format_args!("trials are not cached: {error}"));
             }
         };
-        let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
+        let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::asked() };
         let plan = explain(&case, &target, seconds, &kept, trial, &notice).map_err(failed)?;
         clear_progress();
         if !common.json {
@@ -179,25 +180,25 @@ impl ExplainVerb {
         };
         let Analysis { rows, cut_off } = analysis;
         if common.json {
-            print_json(&Said { plan, analyzed: rows, cut_off })?;
+            print_json(&PlanDocument { plan, analyzed: rows, cut_off })?;
         } else if !rows.is_empty() {
             print(&table(&rows, cut_off))?;
         }
         if signals::asked().load(Ordering::SeqCst) {
-            return Err(Failure::Stopped(signals::End::Whole));
+            return Err(CommandFailure::Stopped(signals::ProcessEnd::Whole));
         }
-        written.and(refused.map_err(Failure::from))
+        written.and(refused.map_err(CommandFailure::from))
     }
 
     /// Checks that the plan can be written to the file of `--write`.
-    fn may_write(&self) -> Result<(), Failure> {
+    fn may_write(&self) -> Result<(), CommandFailure> {
         let Some(file) = &self.write else { return Ok(()) };
         may_put(file, self.overwrite, "choose another --write, or add --overwrite to lose it")?;
-        try_beside(file).map_err(Failure::writing(file.display().to_string()))
+        try_beside(file).map_err(CommandFailure::writing(file.display().to_string()))
     }
 
     /// Checks that the plan may be executed; asks the user if it takes long.
-    fn may_analyze(&self, plan: &Plan) -> Result<(), LongRun> {
+    fn may_analyze(&self, plan: &RunPlan) -> Result<(), LongRun> {
         let likely = plan.seconds.likely;
         if likely <= LONG || self.yes {
             return Ok(());
@@ -216,7 +217,7 @@ impl ExplainVerb {
     }
 
     /// Writes the plan as a scene file; on failure the old file stays.
-    fn written(&self, plan: &Plan, file: &Path, case: &Case) -> Result<(), Failure> {
+    fn written(&self, plan: &RunPlan, file: &Path, case: &StudyCase) -> Result<(), CommandFailure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
         let text = format!(
@@ -225,21 +226,22 @@ impl ExplainVerb {
             if seeds.is_empty() { "" } else { " with its seeds" },
             prepared.scene
         );
-        put(file, &text, self.overwrite).map_err(Failure::writing(file.display().to_string()))
+        put(file, &text, self.overwrite).map_err(CommandFailure::writing(file.display().to_string()))
     }
 
     /// Executes one run of the plan and compares it with the estimates.
-    fn analyzed(plan: &Plan, target: &Target, case: &Case) -> Result<Analysis, Failure> {
+    fn analyzed(plan: &RunPlan, target: &PlanTarget, case: &StudyCase) -> Result<Analysis, CommandFailure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let observed = (case.entry.quantities, target.place);
         // An interrupted run ends early and is reported as cut off.
         let held = signals::hold();
-        let trial = Trial { watch: &Stopwatch::wall(), stop: signals::asked() };
-        let found: Sample =
-            trial.sample(&prepared, observed, Span::Planned(plan.time, None)).map_err(Failure::from)?;
+        let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::asked() };
+        let found: TrialSample = trial
+            .sample(&prepared, observed, SampleSpan::Planned(plan.time, None))
+            .map_err(CommandFailure::from)?;
         drop(held);
         if let Some(cut_off) = found.cut_off(plan.time) {
-            let wall = Compared {
+            let wall = EstimateCheck {
                 what: "wall time of a run".to_owned(),
                 estimated: plan.seconds.likely,
                 actual: found.seconds,
@@ -252,7 +254,7 @@ impl ExplainVerb {
         let window = target.window.unwrap_or([0.0, f64::INFINITY]);
         let seeds = plan.seeds as f64;
         let known = if plan.is_whole { None } else { found.known() };
-        let mut rows = vec![Compared {
+        let mut rows = vec![EstimateCheck {
             what: "wall time of a run".to_owned(),
             estimated: plan.seconds.likely,
             actual: found.seconds,
@@ -260,8 +262,8 @@ impl ExplainVerb {
             is_within: (plan.seconds.least..=plan.seconds.most).contains(&found.seconds),
             advice: "the load of the host has changed since the trials: use --patient",
         }];
-        if let Outcome::Kept { farthest, .. } = found.outcome {
-            rows.push(Compared {
+        if let AverageOutcome::Kept { farthest, .. } = found.outcome {
+            rows.push(EstimateCheck {
                 what: format!("largest {}", plan.quantity),
                 estimated: plan.expected.most,
                 actual: farthest,
@@ -274,7 +276,7 @@ impl ExplainVerb {
             let actual =
                 found.phases.iter().find(|(phase, _)| phase == name).map(|(_, cost)| cost * found.time);
             let Some(actual) = actual else { continue };
-            rows.push(Compared {
+            rows.push(EstimateCheck {
                 what: format!("of it: {name}"),
                 estimated: *estimated,
                 actual,
@@ -284,7 +286,7 @@ impl ExplainVerb {
                 advice: "phases were measured at another step or start: use --patient",
             });
         }
-        rows.extend(peak().map(|peak| Compared {
+        rows.extend(peak().map(|peak| EstimateCheck {
             what: "memory, trials included".to_owned(),
             estimated: plan.memory as f64 / MEGABYTE,
             actual: peak as f64 / MEGABYTE,
@@ -294,7 +296,7 @@ impl ExplainVerb {
         }));
         if let (true, Some([mean, bar])) = (plan.is_whole, plan.mean) {
             let chance = plan.expected.chance * seeds.sqrt();
-            rows.push(Compared {
+            rows.push(EstimateCheck {
                 what: format!("mean {} over the run, minus reference", plan.quantity),
                 estimated: 0.0,
                 actual: found.mean_over(window) - mean,
@@ -306,7 +308,7 @@ impl ExplainVerb {
         }
         if let (Some(known), Some([mean, bar])) = (known, plan.mean) {
             let chance = plan.expected.chance * seeds.sqrt();
-            rows.push(Compared {
+            rows.push(EstimateCheck {
                 what: format!("statistical error of {} in a run (95 %), at most", plan.quantity),
                 estimated: chance,
                 actual: known.bar,
@@ -315,7 +317,7 @@ impl ExplainVerb {
                 advice: "trials were too short to estimate the scatter: use --patient",
             });
             let allowed = plan.expected.bias.with(known.bar.hypot(bar));
-            rows.push(Compared {
+            rows.push(EstimateCheck {
                 what: format!("mean {}, minus reference", plan.quantity),
                 estimated: 0.0,
                 actual: known.mean - mean,
@@ -328,16 +330,21 @@ impl ExplainVerb {
     }
 }
 
-fn table(rows: &[Compared], cut_off: Option<String>) -> String {
-    let number =
-        |of: fn(&Compared) -> f64| move |it: &&Compared| with_unit(&significant(of(it), 3), &it.unit);
-    let table = Rows::of(rows)
+fn table(rows: &[EstimateCheck], cut_off: Option<String>) -> String {
+    let number = |of: fn(&EstimateCheck) -> f64| {
+        move |it: &&EstimateCheck| with_unit(&significant(of(it), 3), &it.unit)
+    };
+    let table = FrameBuilder::of(rows)
         .text("what", |it| it.what.clone())
         .text("estimated", number(|it| it.estimated))
         .text("actual", number(|it| it.actual))
         .cell("ratio", |it| {
             let ratio = it.actual / it.estimated;
-            if it.estimated == 0.0 { Cell::Nothing } else { Cell::Number(ratio, decimals(ratio, 3)) }
+            if it.estimated == 0.0 {
+                TableCell::Nothing
+            } else {
+                TableCell::Number(ratio, decimals(ratio, 3))
+            }
         })
         .text("remark", |it| {
             if it.is_within { String::new() } else { format!("outside the expected range: {}", it.advice) }
@@ -348,9 +355,9 @@ fn table(rows: &[Compared], cut_off: Option<String>) -> String {
 }
 
 /// Failure of a plan; stopped trials end like any interrupted command.
-pub(super) fn failed(error: impl Into<ExplainError>) -> Failure {
+pub(super) fn failed(error: impl Into<ExplainError>) -> CommandFailure {
     match error.into() {
-        ExplainError::Stopped => Failure::Stopped(signals::End::Whole),
+        ExplainError::Stopped => CommandFailure::Stopped(signals::ProcessEnd::Whole),
         error => StudyError::Own(Box::new(error)).into(),
     }
 }

@@ -1,7 +1,7 @@
 //! `stripmine man`: the manual page in roff.
 
 use super::{command, manual};
-use crate::console::{Failure, print};
+use crate::console::{CommandFailure, print};
 use clap::Args;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
@@ -15,7 +15,7 @@ pub(super) struct ManVerb {
 }
 
 impl ManVerb {
-    pub(super) fn run(&self, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, methods: Methods) -> Result<(), CommandFailure> {
         // Propagates the global options to every verb.
         let mut command = command(methods);
         command.build();
@@ -23,7 +23,7 @@ impl ManVerb {
             None => command,
             Some(verb) => {
                 let found = command.find_subcommand(verb).cloned();
-                found.ok_or_else(|| Failure::UnknownVerb {
+                found.ok_or_else(|| CommandFailure::UnknownVerb {
                     verb: verb.clone(),
                     verbs: command.get_subcommands().map(|known| known.get_name().to_owned()).collect(),
                 })?
@@ -35,13 +35,13 @@ impl ManVerb {
         let page = Man::new(page.after_help(None::<&str>).after_long_help(None::<&str>));
         page.render(&mut text)
             .and_then(|()| below(parts).to_writer(&mut text))
-            .map_err(Failure::writing("the manual page"))?;
+            .map_err(CommandFailure::writing("the manual page"))?;
         print(&String::from_utf8_lossy(&text))
     }
 }
 
 /// Sections below the options: examples, exit codes, environment.
-fn below(parts: Vec<manual::Part>) -> Roff {
+fn below(parts: Vec<manual::HelpSection>) -> Roff {
     let mut page = Roff::new();
     for (heading, entries) in parts {
         page.control("SH", [heading.to_uppercase().as_str()]);

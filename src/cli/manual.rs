@@ -138,10 +138,10 @@ const ENVIRONMENT: &[(&str, &str)] = &[
 const SEE_ALSO: &str = "stripmine VERB --help, stripmine man VERB, stripmine scene keys, README";
 
 /// Heading with its entries, each a text and its meaning.
-pub(super) type Part = (&'static str, Vec<(&'static str, &'static str)>);
+pub(super) type HelpSection = (&'static str, Vec<(&'static str, &'static str)>);
 
 /// Parts for a verb, or for the command as a whole if the verb is empty.
-pub(super) fn parts(verb: &str) -> Vec<Part> {
+pub(super) fn parts(verb: &str) -> Vec<HelpSection> {
     let examples =
         EXAMPLES.iter().filter(|(of, _)| *of == verb).map(|(_, examples)| ("Examples", examples.to_vec()));
     let codes = [
@@ -162,7 +162,7 @@ pub(super) fn examples(verb: &str) -> String {
     written(parts(verb).into_iter().filter(|(heading, _)| *heading == "Examples"))
 }
 
-fn written(parts: impl IntoIterator<Item = Part>) -> String {
+fn written(parts: impl IntoIterator<Item = HelpSection>) -> String {
     let mut text = String::new();
     for (heading, entries) in parts {
         text.push_str(&format!("{heading}:\n"));

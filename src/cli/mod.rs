@@ -17,7 +17,7 @@ mod run;
 mod scene;
 
 use crate::console::Verb;
-use crate::console::{Common, Failure, MOST_THREADS, clear_progress, print_answer, tell};
+use crate::console::{CommandFailure, Common, MOST_THREADS, clear_progress, print_answer, tell};
 use crate::laboratory::laboratories;
 use crate::laboratory::rates::{VERB, serve};
 use crate::provenance::command_line;
@@ -25,13 +25,13 @@ use crate::results::Item;
 use crate::study;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
-use processes::Session;
+use processes::ProcessSession;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use stripmine_physics::method::{METHODS, Methods};
 use stripmine_physics::quoted::quoted;
-use stripmine_physics::ranks::Crew;
+use stripmine_physics::ranks::RankBackend;
 use stripmine_physics::signals;
 
 /// Simulates 2D particle systems, plans runs for a target error, and counts every vector operation.
@@ -144,20 +144,20 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
     let as_data = arguments.iter().any(|argument| argument == "--json");
     let last_words = move |end| {
         clear_progress();
-        tell(&Failure::Stopped(end), as_data);
+        tell(&CommandFailure::Stopped(end), as_data);
     };
     let matches = understood(&arguments, methods);
     let verb = matches.as_ref().ok().and_then(Option::as_ref).and_then(ArgMatches::subcommand_name);
     let verb = verb.unwrap_or_default().to_owned();
     // Help and version join no other process. A process with wrong arguments joins the others to end them.
-    let outcome = match matches.transpose().map(|matches| (Session::begin(&verb), matches)) {
+    let outcome = match matches.transpose().map(|matches| (ProcessSession::begin(&verb), matches)) {
         None => Ok(()),
         // The session outlives the verb.
         Some((Ok(session), matches)) => {
             let outcome = matches.and_then(|matches| {
                 // The handler waits in its own thread, the first thing to fail when memory is short.
                 let what = "the interrupt handler (a thread that takes some megabytes of memory)";
-                signals::install(last_words).map_err(Failure::writing(what))?;
+                signals::install(last_words).map_err(CommandFailure::writing(what))?;
                 carried_out(&matches, &command_line(&arguments), session.crew(), methods)
             });
             clear_progress();
@@ -181,7 +181,7 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
 }
 
 /// Rejects an invalid number of threads in `RAYON_NUM_THREADS`.
-fn threads_of_environment() -> Result<(), Failure> {
+fn threads_of_environment() -> Result<(), CommandFailure> {
     let Some(given) = std::env::var_os("RAYON_NUM_THREADS").filter(|given| !given.is_empty()) else {
         return Ok(());
     };
@@ -189,24 +189,29 @@ fn threads_of_environment() -> Result<(), Failure> {
     // 0 means one thread per core.
     match given.parse::<u16>() {
         Ok(0..=MOST_THREADS) => Ok(()),
-        _ => Err(Failure::ThreadsOfEnvironment(quoted(&given))),
+        _ => Err(CommandFailure::ThreadsOfEnvironment(quoted(&given))),
     }
 }
 
 /// Parses the arguments; returns none after printing help or the version.
-fn understood(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatches>, Failure> {
+fn understood(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatches>, CommandFailure> {
     let mut command = command(methods);
     match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => Ok(Some(matches)),
         Err(mistake) if mistake.use_stderr() => {
-            Err(Failure::Arguments(meant::advised(mistake, arguments, &command, methods)))
+            Err(CommandFailure::Arguments(meant::advised(mistake, arguments, &command, methods)))
         }
         Err(answer) => print_answer(&answer).map(|()| None),
     }
 }
 
-fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods) -> Result<(), Failure> {
-    let common = Common::from_arg_matches(matches).map_err(Failure::Arguments)?;
+fn carried_out(
+    matches: &ArgMatches,
+    command: &str,
+    crew: RankBackend,
+    methods: Methods,
+) -> Result<(), CommandFailure> {
+    let common = Common::from_arg_matches(matches).map_err(CommandFailure::Arguments)?;
     let rank = processes::rank(crew);
     let common = Common { command: command.to_owned(), crew, quiet: common.quiet || rank > 0, ..common };
     // Other verbs run on the first rank only.
@@ -222,9 +227,9 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
     if let Some((verb, _)) =
         matches.subcommand().filter(|(verb, _)| *verb != "bench" && common.threads.len() > 1)
     {
-        return Err(Failure::SeveralThreads(verb.to_owned()));
+        return Err(CommandFailure::SeveralThreads(verb.to_owned()));
     }
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(Failure::Threads)?;
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(CommandFailure::Threads)?;
     let named = |verb: &&Verb, name: &str| verb.name == name;
     let of_method = match matches.subcommand() {
         Some(("chart", below)) => below
@@ -239,7 +244,7 @@ fn carried_out(matches: &ArgMatches, command: &str, crew: Crew, methods: Methods
         Some((verb, matches)) => return (verb.run)(matches, &common),
         None => {}
     }
-    match CommandLine::from_arg_matches(matches).map_err(Failure::Arguments)?.verb {
+    match CommandLine::from_arg_matches(matches).map_err(CommandFailure::Arguments)?.verb {
         GeneralVerb::Reproduce(verb) => verb.run(&common, methods),
         GeneralVerb::Scene(verb) => verb.run(&common, methods),
         GeneralVerb::Run(verb) => verb.run(&common, methods),

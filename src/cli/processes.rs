@@ -8,15 +8,15 @@ mod joining;
 
 #[cfg(feature = "mpi")]
 use crate::console::warn;
-use crate::console::{Failure, tell};
+use crate::console::{CommandFailure, tell};
 use crate::laboratory::rates::VERB as MEASURE;
 use crate::study::StudyError;
-use agreement::{Part, Verdict, agreed};
+use agreement::{JointVerdict, ProcessState, agreed};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
-use stripmine_physics::method::{DISMISSED, Failure as Broken, FailureKind, RANK_ENDED};
-use stripmine_physics::ranks::{self, Crew, RankError, Ranks, dismiss, is_dismissed};
-use stripmine_physics::reported::Class;
+use stripmine_physics::method::{DISMISSED, FailureKind, PhysicsFailure as Broken, RANK_ENDED};
+use stripmine_physics::ranks::{self, RankBackend, RankError, Ranks, dismiss, is_dismissed};
+use stripmine_physics::reported::ErrorClass;
 
 /// Environment variables in which a launcher stores the number of processes and the rank.
 struct Launcher {
@@ -36,7 +36,7 @@ const ALONE: [&str; 6] = ["scene", "average", "plot", "completions", "man", MEAS
 
 /// One of several processes started by a launcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Launched {
+struct LaunchedProcess {
     rank: usize,
     count: usize,
     /// Variable that holds the rank.
@@ -44,15 +44,15 @@ struct Launched {
 }
 
 /// Rank of this process, from the environment; none if it is the only one.
-fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<Launched> {
+fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<LaunchedProcess> {
     let number = |name: &str| variable(name)?.trim().parse::<usize>().ok();
     LAUNCHERS.iter().find_map(|launcher| {
         let (count, rank) = (number(launcher.size)?, number(launcher.rank)?);
-        (count > 1).then_some(Launched { rank, count, variable: launcher.rank })
+        (count > 1).then_some(LaunchedProcess { rank, count, variable: launcher.rank })
     })
 }
 
-fn own_place() -> Option<Launched> {
+fn own_place() -> Option<LaunchedProcess> {
     launched(|name| std::env::var(name).ok())
 }
 
@@ -64,57 +64,57 @@ pub(super) fn is_first(verb: &str) -> bool {
 const PROCESSES: FailureKind = FailureKind::new("processes");
 
 /// Session of messages between ranks, open until the program ends.
-pub(super) struct Session {
+pub(super) struct ProcessSession {
     #[cfg(feature = "mpi")]
     _session: Option<stripmine_physics::ranks::mpi::Session>,
-    crew: Crew,
+    crew: RankBackend,
 }
 
-impl Session {
+impl ProcessSession {
     /// Joins the other processes, if there are any and the verb has work for them.
     ///
     /// # Errors
     /// [`Failure`] if there are any and this program was built without MPI.
-    pub(super) fn begin(verb: &str) -> Result<Session, Failure> {
+    pub(super) fn begin(verb: &str) -> Result<ProcessSession, CommandFailure> {
         let Some(place) = own_place().filter(|_| !ALONE.contains(&verb)) else {
-            return Ok(Session {
+            return Ok(ProcessSession {
                 #[cfg(feature = "mpi")]
                 _session: None,
-                crew: Crew::One,
+                crew: RankBackend::One,
             });
         };
         #[cfg(feature = "mpi")]
-        return Ok(Session {
+        return Ok(ProcessSession {
             _session: joining::watched(stripmine_physics::ranks::mpi::Session::begin, waiting(place)),
-            crew: Crew::Processes(stripmine_physics::ranks::mpi::world),
+            crew: RankBackend::Processes(stripmine_physics::ranks::mpi::world),
         });
         #[cfg(not(feature = "mpi"))]
         Err(without_mpi(place))
     }
 
     /// Crew that runs simulations.
-    pub(super) fn crew(&self) -> Crew {
+    pub(super) fn crew(&self) -> RankBackend {
         self.crew
     }
 
     /// Outcome of this process, shared with all others. A process that could not begin ends all of them, so that none waits for it.
-    pub(super) fn ended(&self, outcome: Result<(), Failure>) -> Result<(), Failure> {
-        let Crew::Processes(join) = self.crew else { return outcome };
+    pub(super) fn ended(&self, outcome: Result<(), CommandFailure>) -> Result<(), CommandFailure> {
+        let RankBackend::Processes(join) = self.crew else { return outcome };
         let part = match &outcome {
-            Err(failure) if failure.exit_code() != 0 => Part::refused(failure),
-            _ => Part::Finished,
+            Err(failure) if failure.exit_code() != 0 => ProcessState::refused(failure),
+            _ => ProcessState::Finished,
         };
         match first_exchange(join().as_ref(), part)? {
-            Verdict::Own => outcome,
-            Verdict::Failed(failure) => Err(failure),
+            JointVerdict::Own => outcome,
+            JointVerdict::Failed(failure) => Err(failure),
         }
     }
 }
 
-impl Drop for Session {
+impl Drop for ProcessSession {
     fn drop(&mut self) {
         // MPI would deadlock: it waits for the others, and they wait for this process.
-        if thread::panicking() && matches!(self.crew, Crew::Processes(_)) {
+        if thread::panicking() && matches!(self.crew, RankBackend::Processes(_)) {
             abort(PANICKED);
         }
     }
@@ -140,9 +140,9 @@ pub(super) fn have_met() -> bool {
 }
 
 /// Verdict on all processes from the first exchange; later calls return `Own`.
-fn first_exchange(ranks: &dyn Ranks, part: Part) -> Result<Verdict, Failure> {
+fn first_exchange(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdict, CommandFailure> {
     if HAVE_MET.swap(true, Ordering::SeqCst) {
-        return Ok(Verdict::Own);
+        return Ok(JointVerdict::Own);
     }
     agreed(ranks, part).map_err(lost)
 }
@@ -151,10 +151,10 @@ fn first_exchange(ranks: &dyn Ranks, part: Part) -> Result<Verdict, Failure> {
 ///
 /// # Errors
 /// [`Failure`] on all processes, naming the rank that cannot begin or does something else.
-pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), Failure> {
-    match first_exchange(ranks, Part::Begins(same.to_owned()))? {
-        Verdict::Own => Ok(()),
-        Verdict::Failed(failure) => Err(failure),
+pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), CommandFailure> {
+    match first_exchange(ranks, ProcessState::Begins(same.to_owned()))? {
+        JointVerdict::Own => Ok(()),
+        JointVerdict::Failed(failure) => Err(failure),
     }
 }
 
@@ -164,7 +164,9 @@ const PATIENCE: [u64; 2] = [20, 280];
 
 /// Actions while waiting for others to join: ranks 0 and 1 print a notice, since either may be the missing one; all end after the limit.
 #[cfg(feature = "mpi")]
-fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, joining::Act)> {
+fn waiting(
+    LaunchedProcess { rank, count, .. }: LaunchedProcess,
+) -> Vec<(std::time::Duration, joining::TimedAction)> {
     let [notice, end] = PATIENCE;
     let words = move |seconds: u64| {
         format!("rank {rank} of {count} has waited {seconds} s for processes that have not joined")
@@ -187,13 +189,13 @@ fn waiting(Launched { rank, count, .. }: Launched) -> Vec<(std::time::Duration, 
         std::process::exit(failure.exit_code().into());
     };
     let seconds = std::time::Duration::from_secs;
-    let acts: [(std::time::Duration, joining::Act); 2] =
+    let acts: [(std::time::Duration, joining::TimedAction); 2] =
         [(seconds(notice), Box::new(warns)), (seconds(end), Box::new(ends))];
     acts.into()
 }
 
 #[cfg(not(feature = "mpi"))]
-fn without_mpi(Launched { count, variable, .. }: Launched) -> Failure {
+fn without_mpi(LaunchedProcess { count, variable, .. }: LaunchedProcess) -> CommandFailure {
     let what = format!(
         "this is one of {count} processes ({variable} is set), but this program was built without MPI"
     );
@@ -204,38 +206,38 @@ fn without_mpi(Launched { count, variable, .. }: Launched) -> Failure {
     broken(what, &remedy)
 }
 
-fn broken(what: String, remedy: &str) -> Failure {
+fn broken(what: String, remedy: &str) -> CommandFailure {
     StudyError::Own(Box::new(Broken::new(PROCESSES, what, remedy))).into()
 }
 
 /// Failure for a lost rank.
-pub(super) fn lost(lost: RankError) -> Failure {
+pub(super) fn lost(lost: RankError) -> CommandFailure {
     broken(lost.to_string(), "see its last message")
 }
 
 /// Failure of another rank, with its exit code and message.
-pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> Failure {
-    Failure::OfProcess {
+pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> CommandFailure {
+    CommandFailure::OfProcess {
         process: format!("rank {rank}"),
-        class: Class::of_exit_code(code),
+        class: ErrorClass::of_exit_code(code),
         said: said.to_owned(),
     }
 }
 
 /// Rank of this process; 0 if it is the only one.
-pub(super) fn rank(crew: Crew) -> usize {
-    if let Crew::Processes(join) = crew { join().rank() } else { 0 }
+pub(super) fn rank(crew: RankBackend) -> usize {
+    if let RankBackend::Processes(join) = crew { join().rank() } else { 0 }
 }
 
 /// Failure for ranks requested both as threads and as processes.
-pub(super) fn ranks_twice() -> Failure {
+pub(super) fn ranks_twice() -> CommandFailure {
     let what = "--ranks was given, but this is already one of several processes".to_owned();
     broken(what, "use --ranks without mpiexec, or mpiexec -n without --ranks")
 }
 
 /// Serves simulations begun by `start` on a rank other than the first, until the first dismisses it.
-pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
-    let Crew::Processes(join) = crew else { return };
+pub(super) fn serve(crew: RankBackend, start: impl FnOnce() -> Result<(), Broken>) {
+    let RankBackend::Processes(join) = crew else { return };
     let Err(failure) = ranks::over(crew, start) else { return };
     // If the first rank has begun nothing, it failed for the same reason and reports it. Otherwise it waits for this rank; so do
     // others, if this rank lost one of them in the middle of a step.
@@ -245,7 +247,7 @@ pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
         _ => !is_dismissed(join().as_ref()),
     };
     if is_waited_for {
-        let failure = Failure::from(StudyError::Own(Box::new(failure)));
+        let failure = CommandFailure::from(StudyError::Own(Box::new(failure)));
         let code = failure.exit_code();
         tell(&of_rank(join().rank(), code, &failure.words()), false);
         abort(code);
@@ -259,9 +261,9 @@ pub(super) fn serve(crew: Crew, start: impl FnOnce() -> Result<(), Broken>) {
 pub(super) fn together(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
-    first: impl FnOnce() -> Result<(), Failure>,
+    first: impl FnOnce() -> Result<(), CommandFailure>,
     serve: impl FnOnce(),
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     let ranks = join();
     begin(ranks.as_ref(), same)?;
     if ranks.rank() == 0 {
@@ -280,8 +282,8 @@ pub(super) fn together(
 pub(super) fn apart(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
-    mut work: impl FnMut(usize, usize) -> Result<(), Failure>,
-) -> Result<(), Failure> {
+    mut work: impl FnMut(usize, usize) -> Result<(), CommandFailure>,
+) -> Result<(), CommandFailure> {
     let ranks = join();
     begin(ranks.as_ref(), same)?;
     let outcome = work(ranks.rank(), ranks.count());

@@ -1,10 +1,10 @@
 //! `stripmine reproduce`: makes the items of the report.
 
 use super::{items_of, processes};
-use crate::console::{Common, Failure, SHARES, bar, clear_progress, print_json, say};
+use crate::console::{CommandFailure, Common, SHARES, bar, clear_progress, print_json, say};
 use crate::provenance::{Provenance, built};
 use crate::report::Chapter;
-use crate::results::{Folder, Item, Lab, Size};
+use crate::results::{Folder, Item, StudyEnvironment, StudySize};
 use clap::Args;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::number::{counted, significant};
 use stripmine_physics::quoted;
-use stripmine_physics::ranks::{Crew, Ranks};
+use stripmine_physics::ranks::{RankBackend, Ranks};
 use stripmine_physics::signals;
 
 /// Reproduces every table, figure and claim of the papers
@@ -38,7 +38,7 @@ pub(super) struct Reproduce {
 
 /// Result of making an item.
 #[derive(Serialize, Deserialize)]
-struct Outcome {
+struct ItemOutcome {
     item: String,
     verdict: String,
     seconds: f64,
@@ -46,14 +46,14 @@ struct Outcome {
 }
 
 /// Names of the items of each process.
-type Names = Vec<Vec<String>>;
+type ItemNames = Vec<Vec<String>>;
 
 /// Items made by a process, or the exit code and message of its failure.
-type Made = Result<Vec<Outcome>, (u8, String)>;
+type ProcessOutcome = Result<Vec<ItemOutcome>, (u8, String)>;
 
 /// Settings and destination of the items of one process.
-struct Job<'j> {
-    effort: Size,
+struct ItemJob<'j> {
+    effort: StudySize,
     common: &'j Common,
     folder: &'j Folder,
     /// Items of the page; none if another process writes it.
@@ -65,8 +65,8 @@ struct Job<'j> {
 
 impl Reproduce {
     /// Makes the items. Several processes share them; the first alone makes those that measure this host.
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
-        let Crew::Processes(join) = common.crew else { return self.make(None, common, methods) };
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
+        let RankBackend::Processes(join) = common.crew else { return self.make(None, common, methods) };
         let ranks = join();
         let first = || self.make(Some(ranks.as_ref()), common, methods);
         processes::together(join, &format!("{}\n{:?}", common.command, built()), first, || {
@@ -74,7 +74,12 @@ impl Reproduce {
         })
     }
 
-    fn make(&self, ranks: Option<&dyn Ranks>, common: &Common, methods: Methods) -> Result<(), Failure> {
+    fn make(
+        &self,
+        ranks: Option<&dyn Ranks>,
+        common: &Common,
+        methods: Methods,
+    ) -> Result<(), CommandFailure> {
         let effort = self.effort();
         let mut all: Vec<&'static Item> = items_of(methods).collect();
         all.sort_by_key(|item| item.chapter());
@@ -91,9 +96,12 @@ impl Reproduce {
                 counted(items.len(), "item", "items"),
                 lasting(expected)
             ));
-            if effort == Size::Full && self.only.is_empty() {
-                let more = others.iter().map(|item| item.seconds(Size::All)).sum::<f64>()
-                    + items.iter().map(|item| item.seconds(Size::All) - item.seconds(effort)).sum::<f64>();
+            if effort == StudySize::Full && self.only.is_empty() {
+                let more = others.iter().map(|item| item.seconds(StudySize::All)).sum::<f64>()
+                    + items
+                        .iter()
+                        .map(|item| item.seconds(StudySize::All) - item.seconds(effort))
+                        .sum::<f64>();
                 say(format_args!(
                     "--all adds {} (beyond the papers, and of this host) and longer series: about {} more",
                     counted(others.len(), "item", "items"),
@@ -102,7 +110,7 @@ impl Reproduce {
             }
         }
         let job =
-            Job { effort, common, folder: &folder, on_page: Some(on_page), bar, before: Cell::new(0.0) };
+            ItemJob { effort, common, folder: &folder, on_page: Some(on_page), bar, before: Cell::new(0.0) };
         let outcomes = match ranks {
             None => job.make(&items)?,
             Some(ranks) => {
@@ -122,24 +130,25 @@ impl Reproduce {
     fn help(&self, ranks: &dyn Ranks, common: &Common, methods: Methods) {
         let effort = self.effort();
         let folder = Folder::of_another(&self.out);
-        while let Ok(Some(names)) = ranks.tell_message::<Option<Names>>(None) {
+        while let Ok(Some(names)) = ranks.tell_message::<Option<ItemNames>>(None) {
             let own = names.get(ranks.rank()).into_iter().flatten();
             let own: Vec<&'static Item> =
                 own.filter_map(|name| items_of(methods).find(|item| item.name == name)).collect();
             let bar = ProgressBar::hidden();
-            let job = Job { effort, common, folder: &folder, on_page: None, bar, before: Cell::new(0.0) };
-            let made: Made = job.make(&own).map_err(|failure| (failure.exit_code(), failure.words()));
+            let job = ItemJob { effort, common, folder: &folder, on_page: None, bar, before: Cell::new(0.0) };
+            let made: ProcessOutcome =
+                job.make(&own).map_err(|failure| (failure.exit_code(), failure.words()));
             if ranks.gather_messages(made).is_err() {
                 return;
             }
         }
     }
 
-    fn effort(&self) -> Size {
+    fn effort(&self) -> StudySize {
         match (self.quick, self.all) {
-            (true, _) => Size::Quick,
-            (false, true) => Size::All,
-            (false, false) => Size::Full,
+            (true, _) => StudySize::Quick,
+            (false, true) => StudySize::All,
+            (false, false) => StudySize::Full,
         }
     }
 
@@ -158,7 +167,7 @@ impl Reproduce {
         common: &Common,
         folder: &Folder,
         asked: Vec<&'static Item>,
-    ) -> Result<Vec<&'static Item>, Failure> {
+    ) -> Result<Vec<&'static Item>, CommandFailure> {
         if !self.only.is_empty() {
             return Ok(asked);
         }
@@ -181,18 +190,18 @@ impl Reproduce {
     }
 }
 
-impl Job<'_> {
+impl ItemJob<'_> {
     /// Makes items, one after the other.
-    fn make(&self, items: &[&'static Item]) -> Result<Vec<Outcome>, Failure> {
+    fn make(&self, items: &[&'static Item]) -> Result<Vec<ItemOutcome>, CommandFailure> {
         items.iter().map(|item| self.make_one(item)).collect()
     }
 
-    fn make_one(&self, item: &'static Item) -> Result<Outcome, Failure> {
+    fn make_one(&self, item: &'static Item) -> Result<ItemOutcome, CommandFailure> {
         let (share, before) = (item.seconds(self.effort), self.before.get());
         self.bar.set_message(format!("{}, about {}", item.name, lasting(share)));
         let (start, bar) = (Instant::now(), &self.bar);
         let progress = |part| bar.set_position(ticks(before + part * share));
-        let lab = Lab::apart(&progress);
+        let lab = StudyEnvironment::apart(&progress);
         let made = item.make(&lab, self.effort)?;
         self.before.set(before + share);
         let seconds = start.elapsed().as_secs_f64();
@@ -204,12 +213,12 @@ impl Job<'_> {
         })?;
         let verdict = section.outcome();
         let folder = folder.to_string_lossy().into_owned();
-        let outcome = Outcome { item: item.name.to_owned(), verdict, seconds, folder };
+        let outcome = ItemOutcome { item: item.name.to_owned(), verdict, seconds, folder };
         self.say(&outcome);
         Ok(outcome)
     }
 
-    fn say(&self, Outcome { item, verdict, seconds, folder }: &Outcome) {
+    fn say(&self, ItemOutcome { item, verdict, seconds, folder }: &ItemOutcome) {
         if !self.common.quiet {
             say(format_args!(
                 "{item:<20} {verdict:<18} {:>6} s  {}",
@@ -224,12 +233,12 @@ impl Job<'_> {
         &self,
         ranks: &dyn Ranks,
         dealt: &[Vec<&'static Item>],
-    ) -> Result<Vec<Outcome>, Failure> {
-        let names: Names =
+    ) -> Result<Vec<ItemOutcome>, CommandFailure> {
+        let names: ItemNames =
             dealt.iter().map(|own| own.iter().map(|item| item.name.to_owned()).collect()).collect();
         ranks.tell_message(Some(Some(names))).map_err(processes::lost)?;
         let own = self.make(&dealt[0]);
-        let all: Vec<Made> = ranks.gather_messages(Ok(vec![])).map_err(processes::lost)?;
+        let all: Vec<ProcessOutcome> = ranks.gather_messages(Ok(vec![])).map_err(processes::lost)?;
         let mut outcomes = own?;
         for (rank, made) in all.into_iter().enumerate() {
             let made = made.map_err(|(code, words)| processes::of_rank(rank, code, &words))?;
@@ -287,7 +296,7 @@ mod tests {
     fn default_items_take_five_minutes() {
         let default: Vec<&Item> = items_of(METHODS).filter(|item| item.is_default()).collect();
         assert!(default.len() >= 19, "{} items", default.len());
-        let seconds: f64 = default.iter().map(|item| item.seconds(Size::Full)).sum();
+        let seconds: f64 = default.iter().map(|item| item.seconds(StudySize::Full)).sum();
         assert!(seconds <= 300.0, "{seconds} s");
         for item in default {
             assert!(item.memory() <= 2000, "{}: {} MiB", item.name, item.memory());
@@ -305,7 +314,7 @@ mod tests {
                 continue;
             }
             let near = |stated: f64| made.seconds < 1.5 * stated + 1.0 && stated < 1.5 * made.seconds + 1.0;
-            let stated = [Size::Full, Size::All].map(|effort| item.seconds(effort));
+            let stated = [StudySize::Full, StudySize::All].map(|effort| item.seconds(effort));
             assert!(
                 stated.into_iter().any(near),
                 "{}: {stated:?} s, and took {:.0} s",

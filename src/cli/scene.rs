@@ -1,7 +1,7 @@
 //! `stripmine scene`: lists presets and keys, and checks scenes.
 
-use crate::console::{Common, Failure, print, print_json, warn};
-use crate::frame::{Rows, Table};
+use crate::console::{CommandFailure, Common, print, print_json, warn};
+use crate::frame::{FormattedTable, FrameBuilder};
 use crate::laboratory::programs::counted;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
@@ -10,7 +10,7 @@ use crate::study::StudyError;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::{Map, json};
-use stripmine_kernels::backend::Line;
+use stripmine_kernels::backend::ListingLine;
 use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load, method};
 use stripmine_physics::quoted;
 use stripmine_physics::run::forecast;
@@ -20,11 +20,11 @@ use stripmine_physics::scene::{Fallback, Key, Preset, SECTIONS};
 #[derive(Args)]
 pub(super) struct SceneVerb {
     #[command(subcommand)]
-    action: Action,
+    action: SceneAction,
 }
 
 #[derive(Subcommand)]
-enum Action {
+enum SceneAction {
     /// Lists the presets
     List,
     /// Prints a preset as a scene file
@@ -62,17 +62,17 @@ enum Action {
 }
 
 impl SceneVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         match &self.action {
-            Action::List => list(common, methods),
-            Action::Show { name } => show(name, common, methods),
-            Action::Check { scene, overrides } => check(scene, overrides, common, methods),
-            Action::Programs { scene, overrides, machine, listing } => {
+            SceneAction::List => list(common, methods),
+            SceneAction::Show { name } => show(name, common, methods),
+            SceneAction::Check { scene, overrides } => check(scene, overrides, common, methods),
+            SceneAction::Programs { scene, overrides, machine, listing } => {
                 let (prepared, _) = load(scene, overrides, methods)?;
                 let machine = machines::find(machine)?;
                 programs(scene, &prepared, &machine, *listing, common)
             }
-            Action::Keys { method } => keys(method.as_deref(), common, methods),
+            SceneAction::Keys { method } => keys(method.as_deref(), common, methods),
         }
     }
 }
@@ -85,13 +85,13 @@ struct PresetLine {
     text: Option<&'static str>,
 }
 
-fn list(common: &Common, methods: Methods) -> Result<(), Failure> {
+fn list(common: &Common, methods: Methods) -> Result<(), CommandFailure> {
     let lines =
         presets(methods).map(|preset| PresetLine { name: preset.name, title: preset.title(), text: None });
     if common.json {
         return print_json(&lines.collect::<Vec<_>>());
     }
-    let table = Rows::of(lines)
+    let table = FrameBuilder::of(lines)
         .text("name", |line| line.name)
         .text("what it shows", |line| line.title)
         .table("presets", "Presets")
@@ -99,7 +99,7 @@ fn list(common: &Common, methods: Methods) -> Result<(), Failure> {
     print(&terminal::render(&table))
 }
 
-fn show(name: &str, common: &Common, methods: Methods) -> Result<(), Failure> {
+fn show(name: &str, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
     let preset = presets(methods).find(|preset| preset.name == name);
     let text = preset.map(|preset| preset.text).unwrap_or_default();
     match preset {
@@ -115,11 +115,11 @@ pub(super) fn presets(methods: Methods) -> impl Iterator<Item = &'static Preset>
     methods.iter().flat_map(|method| method.vocabulary.presets)
 }
 
-fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> Table {
+fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> FormattedTable {
     let chosen = prepared.choices.iter().map(|choice| format!("chosen: {choice}"));
     let left_out = prepared.left_out.iter().map(|what| format!("left out: {what}"));
     let limits = prepared.step_limits.iter().map(|limit| format!("{}: {}", limit.name, limit.why));
-    Rows::of(facts.iter().filter_map(|fact| fact.words.as_ref()))
+    FrameBuilder::of(facts.iter().filter_map(|fact| fact.words.as_ref()))
         .text("property", |(label, _)| *label)
         .text("value", |(_, words)| words)
         .table("scene", format!("{}: valid scene", quoted::path(name.as_ref())))
@@ -128,7 +128,7 @@ fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> Table {
         .notes(limits)
 }
 
-fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) -> Result<(), Failure> {
+fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) -> Result<(), CommandFailure> {
     let (prepared, entry) = load(name, overrides, methods)?;
     prepared.memory.fits(name)?;
     let above = forecast::above_limits(&prepared);
@@ -155,12 +155,12 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
 
 /// Program as data.
 #[derive(Serialize)]
-struct Listing {
+struct ProgramListing {
     part: &'static str,
     length: &'static str,
     n: usize,
     times: u64,
-    instructions: Vec<Line>,
+    instructions: Vec<ListingLine>,
     #[serde(skip)]
     text: String,
 }
@@ -171,7 +171,7 @@ fn programs(
     machine: &MachineModel,
     listing: bool,
     common: &Common,
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     let (programs, note) = (prepared.model.programs(), prepared.model.programs_note());
     if programs.is_empty() {
         return Err(StudyError::NoPrograms(name.to_owned()).into());
@@ -183,11 +183,11 @@ fn programs(
             data.extend([("scene".to_owned(), json!(name)), ("note".to_owned(), json!(note))]);
             return print_json(&data);
         }
-        let [operations, clocks] = frames.each_ref().map(Table::from);
+        let [operations, clocks] = frames.each_ref().map(FormattedTable::from);
         let tables = [operations.notes(note), clocks];
         return print(&tables.each_ref().map(terminal::render).join("\n"));
     }
-    let of = |it: &VectorProgram| Listing {
+    let of = |it: &VectorProgram| ProgramListing {
         part: it.part,
         length: it.length,
         n: it.n,
@@ -195,12 +195,12 @@ fn programs(
         instructions: it.program.lines(),
         text: it.program.listing(),
     };
-    let listings: Vec<Listing> = programs.iter().map(of).collect();
+    let listings: Vec<ProgramListing> = programs.iter().map(of).collect();
     if common.json {
         return print_json(&listings);
     }
-    let text = |it: &Listing| {
-        let Listing { part, length, n, times, text, .. } = it;
+    let text = |it: &ProgramListing| {
+        let ProgramListing { part, length, n, times, text, .. } = it;
         format!("; {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
     };
     let note = note.map_or(String::new(), |note| format!("; {note}\n"));
@@ -238,7 +238,7 @@ impl KeyLine {
     }
 }
 
-fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), Failure> {
+fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
     let entry = match name {
         Some(name) => method(methods, name),
         None => methods.first().copied(),
@@ -257,7 +257,7 @@ fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), Fai
                 [] => String::new(),
                 choices => format!(" Used with {}.", choices.join(", ")),
             };
-            let table = Rows::of(lines.iter().filter(|line| line.section == section))
+            let table = FrameBuilder::of(lines.iter().filter(|line| line.section == section))
                 .text("key", |line| line.key)
                 .text("value", |line| &line.r#type)
                 .text("unit", |line| line.unit)

@@ -6,14 +6,14 @@ use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::reported::{ErrorClass, FilePlace, Reported};
 use stripmine_physics::scene::SceneErrors;
-use stripmine_physics::signals::{self, End};
+use stripmine_physics::signals::{self, ProcessEnd};
 use stripmine_physics::words::suggestion;
 
 /// Failure of a verb; each kind has its exit code.
 #[derive(Debug, thiserror::Error)]
-pub enum Failure {
+pub enum CommandFailure {
     /// Invalid arguments: exit code 2.
     #[error(transparent)]
     Arguments(clap::Error),
@@ -70,7 +70,7 @@ pub enum Failure {
         /// Name of the process, or its task.
         process: String,
         /// Class of its failure; none if a signal ended it.
-        class: Option<Class>,
+        class: Option<ErrorClass>,
         /// Its message.
         said: String,
     },
@@ -93,10 +93,10 @@ pub enum Failure {
     },
     /// Ended by a signal, without a checkpoint: exit code 130.
     #[error("{}", match .0 {
-        End::Whole => "interrupted: finished results are kept, and no file is incomplete",
-        End::Forced => "interrupted twice and ended at once: the last file may be incomplete",
+        ProcessEnd::Whole => "interrupted: finished results are kept, and no file is incomplete",
+        ProcessEnd::Forced => "interrupted twice and ended at once: the last file may be incomplete",
     })]
-    Stopped(End),
+    Stopped(ProcessEnd),
     /// Standard output cannot be written: exit code 5, or 0 if its reader closed the pipe.
     #[error("standard output cannot be written: {0}")]
     StandardOutput(std::io::Error),
@@ -110,16 +110,16 @@ pub enum Failure {
     },
 }
 
-impl<E: Reported + 'static> From<E> for Failure {
+impl<E: Reported + 'static> From<E> for CommandFailure {
     fn from(error: E) -> Self {
-        Failure::Reported(Box::new(error))
+        CommandFailure::Reported(Box::new(error))
     }
 }
 
 /// Document of `--json` for a failure.
 #[derive(Serialize)]
-struct Document<'f> {
-    error: Report,
+struct FailureDocument<'f> {
+    error: FailureReport,
     /// All mistakes of an input file, if there are any; `error` is the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     errors: Option<&'f SceneErrors>,
@@ -127,7 +127,7 @@ struct Document<'f> {
 
 /// One failure as data.
 #[derive(Debug, PartialEq, Eq, Serialize)]
-struct Report {
+struct FailureReport {
     /// Name of the class, or `interrupted`.
     kind: &'static str,
     /// Description of the failure, with the numbers.
@@ -142,9 +142,9 @@ struct Report {
 }
 
 /// Reports a failure: as a message on standard error and, with `--json` and no output yet, as data on standard output.
-pub(crate) fn tell(failure: &Failure, as_data: bool) {
+pub(crate) fn tell(failure: &CommandFailure, as_data: bool) {
     match failure {
-        Failure::Arguments(mistake) if is_plain(mistake) => {
+        CommandFailure::Arguments(mistake) if is_plain(mistake) => {
             #[expect(
                 clippy::let_underscore_must_use,
                 reason = "if standard error is full or closed, nothing can be reported"
@@ -152,7 +152,7 @@ pub(crate) fn tell(failure: &Failure, as_data: bool) {
             let _ = mistake.print();
         }
         // The parser's messages begin with "error:" as ours do.
-        Failure::Arguments(mistake) => say(mistake.render().to_string().trim_end()),
+        CommandFailure::Arguments(mistake) => say(mistake.render().to_string().trim_end()),
         _ => say(format_args!("error: {failure}")),
     }
     if as_data && is_untouched() {
@@ -160,7 +160,7 @@ pub(crate) fn tell(failure: &Failure, as_data: bool) {
             clippy::let_underscore_must_use,
             reason = "the first failure decides the exit code, reported or not"
         )]
-        let _ = print_json(&Document { error: failure.report(), errors: failure.mistakes() });
+        let _ = print_json(&FailureDocument { error: failure.report(), errors: failure.mistakes() });
     }
 }
 
@@ -170,45 +170,45 @@ fn is_plain(mistake: &clap::Error) -> bool {
     quoted::message(&text) == text
 }
 
-impl Failure {
+impl CommandFailure {
     /// Makes a failure of a system error while `what` was being written or read.
-    pub fn writing(what: impl Into<String>) -> impl FnOnce(std::io::Error) -> Failure {
+    pub fn writing(what: impl Into<String>) -> impl FnOnce(std::io::Error) -> CommandFailure {
         let what = what.into();
-        move |cause| Failure::InputOutput { what, cause }
+        move |cause| CommandFailure::InputOutput { what, cause }
     }
 
     /// Class of the failure; none if a signal ended the verb.
-    pub(crate) fn class(&self) -> Option<Class> {
+    pub(crate) fn class(&self) -> Option<ErrorClass> {
         Some(match self {
-            Failure::Arguments(_)
-            | Failure::Options(_)
-            | Failure::NoSuchOption { .. }
-            | Failure::NoSuchValue { .. }
-            | Failure::SeveralThreads(_)
-            | Failure::ManyThreads { .. }
-            | Failure::ThreadsOfEnvironment(_)
-            | Failure::UnknownVerb { .. } => Class::Usage,
-            Failure::Reported(error) => error.class(),
-            Failure::OfProcess { class, .. } => return *class,
-            Failure::Threads(_) | Failure::StandardOutput(_) | Failure::InputOutput { .. } => {
-                Class::InputOutput
-            }
-            Failure::Interrupted { .. } | Failure::Stopped(_) => return None,
+            CommandFailure::Arguments(_)
+            | CommandFailure::Options(_)
+            | CommandFailure::NoSuchOption { .. }
+            | CommandFailure::NoSuchValue { .. }
+            | CommandFailure::SeveralThreads(_)
+            | CommandFailure::ManyThreads { .. }
+            | CommandFailure::ThreadsOfEnvironment(_)
+            | CommandFailure::UnknownVerb { .. } => ErrorClass::Usage,
+            CommandFailure::Reported(error) => error.class(),
+            CommandFailure::OfProcess { class, .. } => return *class,
+            CommandFailure::Threads(_)
+            | CommandFailure::StandardOutput(_)
+            | CommandFailure::InputOutput { .. } => ErrorClass::InputOutput,
+            CommandFailure::Interrupted { .. } | CommandFailure::Stopped(_) => return None,
         })
     }
 
     /// Exit code of the failure.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Failure::StandardOutput(cause) if cause.kind() == ErrorKind::BrokenPipe => 0,
-            _ => self.class().map_or(signals::INTERRUPTED, Class::exit_code),
+            CommandFailure::StandardOutput(cause) if cause.kind() == ErrorKind::BrokenPipe => 0,
+            _ => self.class().map_or(signals::INTERRUPTED, ErrorClass::exit_code),
         }
     }
 
     fn mistakes(&self) -> Option<&SceneErrors> {
         match self {
-            Failure::Options(errors) => Some(errors),
-            Failure::Reported(error) => error.mistakes(),
+            CommandFailure::Options(errors) => Some(errors),
+            CommandFailure::Reported(error) => error.mistakes(),
             _ => None,
         }
     }
@@ -216,21 +216,21 @@ impl Failure {
     /// Message as `tell` prints it after "error: ".
     pub fn words(&self) -> String {
         let text = match self {
-            Failure::Arguments(mistake) => mistake.render().to_string(),
+            CommandFailure::Arguments(mistake) => mistake.render().to_string(),
             _ => self.to_string(),
         };
         text.strip_prefix("error: ").unwrap_or(&text).to_owned()
     }
 
-    fn report(&self) -> Report {
-        let kind = self.class().map_or("interrupted", Class::name);
+    fn report(&self) -> FailureReport {
+        let kind = self.class().map_or("interrupted", ErrorClass::name);
         if let Some(first) = self.mistakes().and_then(|mistakes| mistakes.0.first()) {
             let [line, column] = [
                 first.place.map(|place| place.line as usize),
                 first.place.map(|place| place.column as usize),
             ];
             let expected = first.expected.as_ref().map(|expected| format!("expected: {expected}"));
-            return Report {
+            return FailureReport {
                 kind,
                 message: first.message.clone(),
                 place: Some(FilePlace { file: first.file.clone(), line, column }),
@@ -246,34 +246,34 @@ impl Failure {
         };
         let message = message.trim().to_owned();
         let (place, details) = (self.place(), self.details());
-        Report { kind, message, place, remedy: remedy.or_else(|| self.remedy()), details }
+        FailureReport { kind, message, place, remedy: remedy.or_else(|| self.remedy()), details }
     }
 
     fn details(&self) -> Option<serde_json::Value> {
         match self {
-            Failure::Reported(error) => error.details(),
+            CommandFailure::Reported(error) => error.details(),
             _ => None,
         }
     }
 
     fn place(&self) -> Option<FilePlace> {
         match self {
-            Failure::Reported(error) => error.place(),
-            Failure::InputOutput { what, .. } => Some(FilePlace::at(Path::new(what))),
-            Failure::Interrupted { folder, .. } => Some(FilePlace::at(folder)),
+            CommandFailure::Reported(error) => error.place(),
+            CommandFailure::InputOutput { what, .. } => Some(FilePlace::at(Path::new(what))),
+            CommandFailure::Interrupted { folder, .. } => Some(FilePlace::at(folder)),
             _ => None,
         }
     }
 
     fn remedy(&self) -> Option<String> {
         let words = match self {
-            Failure::Reported(error) => return error.remedy(),
-            Failure::Threads(_) => "use fewer with --threads",
-            Failure::Interrupted { folder, .. } => {
+            CommandFailure::Reported(error) => return error.remedy(),
+            CommandFailure::Threads(_) => "use fewer with --threads",
+            CommandFailure::Interrupted { folder, .. } => {
                 return Some(format!("resume with --resume --out {}", quoted::path(folder)));
             }
-            Failure::Stopped(_) => "repeat the command; a run resumes with --resume",
-            Failure::InputOutput { .. } | Failure::StandardOutput(_) => {
+            CommandFailure::Stopped(_) => "repeat the command; a run resumes with --resume",
+            CommandFailure::InputOutput { .. } | CommandFailure::StandardOutput(_) => {
                 "check that the location exists, is writable, and has free space"
             }
             _ => return None,
@@ -289,11 +289,11 @@ mod tests {
 
     #[derive(Debug, thiserror::Error)]
     #[error("a file is in the way")]
-    struct InTheWay;
+    struct FileInTheWay;
 
-    impl Reported for InTheWay {
-        fn class(&self) -> Class {
-            Class::Usage
+    impl Reported for FileInTheWay {
+        fn class(&self) -> ErrorClass {
+            ErrorClass::Usage
         }
 
         fn place(&self) -> Option<FilePlace> {
@@ -307,10 +307,10 @@ mod tests {
 
     #[test]
     fn advice_is_separate_from_the_message() {
-        let failure = Failure::from(InTheWay).report();
+        let failure = CommandFailure::from(FileInTheWay).report();
         assert_eq!((failure.kind, failure.remedy.is_some()), ("usage", true));
         assert_eq!(failure.place, Some(FilePlace::at(Path::new("a.run"))));
-        let failure = Failure::StandardOutput(io::ErrorKind::StorageFull.into()).report();
+        let failure = CommandFailure::StandardOutput(io::ErrorKind::StorageFull.into()).report();
         assert_eq!((failure.kind, failure.place), ("input-output", None));
     }
 }

@@ -4,7 +4,7 @@ mod failure;
 mod output;
 mod verb;
 
-pub use failure::Failure;
+pub use failure::CommandFailure;
 pub(crate) use failure::tell;
 pub use output::is_untouched;
 pub(crate) use output::print_answer;
@@ -14,7 +14,7 @@ pub(crate) use output::{
 pub(crate) use verb::Verb;
 
 use clap::Args;
-use stripmine_physics::ranks::Crew;
+use stripmine_physics::ranks::RankBackend;
 
 /// Limit of threads, above the cores of any machine at hand; each thread takes memory.
 pub(crate) const MOST_THREADS: u16 = 1024;
@@ -32,8 +32,8 @@ pub(crate) struct Common {
     #[arg(long, global = true, value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS)))]
     pub threads: Vec<u16>,
     /// Crew of the simulations that a verb can distribute over ranks.
-    #[arg(skip = Crew::One)]
-    pub(crate) crew: Crew,
+    #[arg(skip = RankBackend::One)]
+    pub(crate) crew: RankBackend,
     /// The whole command line, recorded with results.
     #[arg(skip)]
     pub command: String,

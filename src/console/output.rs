@@ -1,7 +1,7 @@
 //! Output of the command: data on standard output; messages and progress on standard error. A failure to write the latter
 //! does not change what the command does.
 
-use super::{Common, Failure};
+use super::{CommandFailure, Common};
 use crate::report::terminal;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Display;
@@ -91,9 +91,9 @@ pub(crate) fn clear_progress() {
 }
 
 /// Writes to standard output.
-fn write(text: impl FnOnce() -> io::Result<()>) -> Result<(), Failure> {
+fn write(text: impl FnOnce() -> io::Result<()>) -> Result<(), CommandFailure> {
     BEGUN.store(true, Ordering::SeqCst);
-    text().and_then(|()| io::stdout().flush()).map_err(Failure::StandardOutput)
+    text().and_then(|()| io::stdout().flush()).map_err(CommandFailure::StandardOutput)
 }
 
 /// Returns true if nothing was written to standard output.
@@ -105,12 +105,12 @@ pub fn is_untouched() -> bool {
 ///
 /// # Errors
 /// [`Failure::StandardOutput`] if it cannot be written.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), CommandFailure> {
     write(|| io::stdout().write_all(quoted::shown(text).as_bytes()))
 }
 
 /// Writes the parser's help or version to standard output.
-pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
+pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), CommandFailure> {
     write(|| answer.print())
 }
 
@@ -118,7 +118,7 @@ pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), Failure> {
 ///
 /// # Errors
 /// [`Failure::StandardOutput`] if it cannot be written.
-pub(crate) fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
+pub(crate) fn print_json(data: &impl serde::Serialize) -> Result<(), CommandFailure> {
     print(&(to_json(data)? + "\n"))
 }
 
@@ -126,8 +126,9 @@ pub(crate) fn print_json(data: &impl serde::Serialize) -> Result<(), Failure> {
 ///
 /// # Errors
 /// If JSON cannot represent the data.
-pub(crate) fn to_json(data: &impl serde::Serialize) -> Result<String, Failure> {
-    let text = serde_json::to_string_pretty(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+pub(crate) fn to_json(data: &impl serde::Serialize) -> Result<String, CommandFailure> {
+    let text =
+        serde_json::to_string_pretty(data).map_err(|cause| CommandFailure::writing("JSON")(cause.into()))?;
     Ok(quoted::in_json(&text))
 }
 

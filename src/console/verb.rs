@@ -1,6 +1,6 @@
 //! Verbs of the laboratory.
 
-use super::{Common, Failure};
+use super::{CommandFailure, Common};
 
 /// Verb of the command defined by the laboratory of a method.
 #[derive(Debug)]
@@ -9,5 +9,5 @@ pub(crate) struct Verb {
     /// Adds help and arguments.
     pub command: fn(clap::Command) -> clap::Command,
     /// Executes the verb.
-    pub run: fn(&clap::ArgMatches, &Common) -> Result<(), Failure>,
+    pub run: fn(&clap::ArgMatches, &Common) -> Result<(), CommandFailure>,
 }

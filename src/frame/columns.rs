@@ -4,20 +4,20 @@ use serde::{Deserialize, Serialize};
 
 /// A table of results: columns with a type, a unit and a meaning, and rows as long as the columns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct ResultFrame {
     /// Name of its file, without the extension.
     pub name: String,
     /// Content in one line.
     pub title: String,
     /// The columns.
-    pub columns: Vec<Column>,
+    pub columns: Vec<FrameColumn>,
     /// Rows, each as long as the columns.
-    pub rows: Vec<Vec<Value>>,
+    pub rows: Vec<Vec<FrameValue>>,
 }
 
 /// A column of a [`Frame`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct FrameColumn {
     /// Name for programs: small letters, digits and `_`.
     pub name: String,
     /// Meaning, as a heading.
@@ -55,7 +55,7 @@ pub enum Digits {
 
 /// Content of a cell of a [`Frame`].
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum FrameValue {
     /// Nothing, or no finite number.
     Nothing,
     /// Words.
@@ -66,14 +66,14 @@ pub enum Value {
     Number(f64),
 }
 
-impl Value {
+impl FrameValue {
     /// Wraps a number; infinities and NaN become nothing.
-    pub(super) fn number(value: f64) -> Value {
-        if value.is_finite() { Value::Number(value) } else { Value::Nothing }
+    pub(super) fn number(value: f64) -> FrameValue {
+        if value.is_finite() { FrameValue::Number(value) } else { FrameValue::Nothing }
     }
 }
 
-impl Frame {
+impl ResultFrame {
     /// Index of a column.
     ///
     /// # Errors
@@ -88,16 +88,16 @@ impl Frame {
 }
 
 /// Export for programs.
-impl Frame {
+impl ResultFrame {
     /// Rows as a list of objects, keyed by the names of the columns.
     pub fn json(&self) -> serde_json::Value {
-        let value = |value: &Value| match value {
-            Value::Nothing => serde_json::Value::Null,
-            Value::Words(words) => words.as_str().into(),
-            Value::Count(count) => (*count).into(),
-            Value::Number(number) => (*number).into(),
+        let value = |value: &FrameValue| match value {
+            FrameValue::Nothing => serde_json::Value::Null,
+            FrameValue::Words(words) => words.as_str().into(),
+            FrameValue::Count(count) => (*count).into(),
+            FrameValue::Number(number) => (*number).into(),
         };
-        let row = |row: &Vec<Value>| {
+        let row = |row: &Vec<FrameValue>| {
             let cells = self.columns.iter().zip(row).map(|(column, it)| (column.name.clone(), value(it)));
             cells.collect::<serde_json::Value>()
         };

@@ -1,11 +1,11 @@
 //! Conversion between tables of cells and frames: cells of one heading become several typed columns.
 
-use super::{Cell, Column, Digits, Frame, Role, Table, Value, names};
+use super::{Digits, FormattedTable, FrameColumn, FrameValue, ResultFrame, Role, TableCell, names};
 
 /// Converts a table of cells to a frame: each column of cells becomes as many typed columns as its cells need.
-impl From<&Table> for Frame {
-    fn from(table: &Table) -> Frame {
-        let mut columns: Vec<Column> = vec![];
+impl From<&FormattedTable> for ResultFrame {
+    fn from(table: &FormattedTable) -> ResultFrame {
+        let mut columns: Vec<FrameColumn> = vec![];
         let mut sources: Vec<usize> = vec![];
         let mut before = String::new();
         for (source, heading) in table.columns.iter().enumerate() {
@@ -30,42 +30,42 @@ impl From<&Table> for Frame {
                     Role::Highest => format!("{base}_highest"),
                 };
                 let unit = names::unit(heading).filter(|_| role != Role::Words).map(str::to_owned);
-                columns.push(Column { name, doc: heading.clone(), unit, role, digits: digits(cells) });
+                columns.push(FrameColumn { name, doc: heading.clone(), unit, role, digits: digits(cells) });
                 sources.push(source);
             }
         }
         let rows = table.rows.iter().map(|cells| {
             let places = columns.iter().zip(&sources);
             places
-                .map(|(column, at)| cells.get(*at).map_or(Value::Nothing, |it| part(it, column.role)))
+                .map(|(column, at)| cells.get(*at).map_or(FrameValue::Nothing, |it| part(it, column.role)))
                 .collect()
         });
         let rows = rows.collect();
-        Frame { name: table.name.clone(), title: table.title.clone(), columns, rows }
+        ResultFrame { name: table.name.clone(), title: table.title.clone(), columns, rows }
     }
 }
 
 /// Converts a frame for reading: columns of one heading become one.
-impl From<&Frame> for Table {
-    fn from(frame: &Frame) -> Table {
+impl From<&ResultFrame> for FormattedTable {
+    fn from(frame: &ResultFrame) -> FormattedTable {
         let mut groups: Vec<Vec<usize>> = vec![];
         for (at, column) in frame.columns.iter().enumerate() {
-            let continues = |before: &Column| before.doc == column.doc && before.role < column.role;
+            let continues = |before: &FrameColumn| before.doc == column.doc && before.role < column.role;
             match groups.last_mut() {
                 Some(group) if continues(&frame.columns[at - 1]) => group.push(at),
                 _ => groups.push(vec![at]),
             }
         }
-        let cell = |row: &[Value], group: &[usize]| {
+        let cell = |row: &[FrameValue], group: &[usize]| {
             let of = |role: Role| {
                 let place = group.iter().find(|at| frame.columns[**at].role == role)?;
-                Some(row[*place].clone()).filter(|value| *value != Value::Nothing)
+                Some(row[*place].clone()).filter(|value| *value != FrameValue::Nothing)
             };
             let digits = frame.columns[group[0]].digits;
-            Cell::of(Role::ALL.map(of), digits)
+            TableCell::of(Role::ALL.map(of), digits)
         };
         let rows = frame.rows.iter().map(|row| groups.iter().map(|group| cell(row, group)).collect());
-        Table {
+        FormattedTable {
             name: frame.name.clone(),
             title: frame.title.clone(),
             columns: groups.iter().map(|group| frame.columns[group[0]].doc.clone()).collect(),
@@ -76,13 +76,14 @@ impl From<&Frame> for Table {
 }
 
 /// Roles of the columns that cells of one heading need.
-fn roles<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Vec<Role> {
-    let has = |is_so: fn(&Cell) -> bool| cells().any(is_so);
-    let ranges = has(|cell| matches!(cell, Cell::Range(..) | Cell::Spread { .. }));
-    let errors = has(|cell| matches!(cell, Cell::WithError { .. }));
-    let numbers = has(|cell| matches!(cell, Cell::Number(..) | Cell::Short(_) | Cell::Spread { .. }));
-    let counts = has(|cell| matches!(cell, Cell::Count(_)));
-    let words = has(|cell| matches!(cell, Cell::Text(words) if !words.is_empty()));
+fn roles<'c, I: Iterator<Item = &'c TableCell>>(cells: impl Fn() -> I) -> Vec<Role> {
+    let has = |is_so: fn(&TableCell) -> bool| cells().any(is_so);
+    let ranges = has(|cell| matches!(cell, TableCell::Range(..) | TableCell::Spread { .. }));
+    let errors = has(|cell| matches!(cell, TableCell::WithError { .. }));
+    let numbers =
+        has(|cell| matches!(cell, TableCell::Number(..) | TableCell::Short(_) | TableCell::Spread { .. }));
+    let counts = has(|cell| matches!(cell, TableCell::Count(_)));
+    let words = has(|cell| matches!(cell, TableCell::Text(words) if !words.is_empty()));
     let all = [
         (numbers || errors, Role::Number),
         (counts && !(numbers || errors), Role::Count),
@@ -95,28 +96,34 @@ fn roles<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Vec<Role> {
 }
 
 /// Digits shown of some cells; the most where they differ.
-fn digits<'c, I: Iterator<Item = &'c Cell>>(cells: impl Fn() -> I) -> Option<Digits> {
+fn digits<'c, I: Iterator<Item = &'c TableCell>>(cells: impl Fn() -> I) -> Option<Digits> {
     let decimals = cells().filter_map(|cell| match cell {
-        Cell::Number(_, decimals)
-        | Cell::WithError { decimals, .. }
-        | Cell::Range(_, decimals)
-        | Cell::Spread { decimals, .. } => Some(*decimals),
+        TableCell::Number(_, decimals)
+        | TableCell::WithError { decimals, .. }
+        | TableCell::Range(_, decimals)
+        | TableCell::Spread { decimals, .. } => Some(*decimals),
         _ => None,
     });
-    let short = || cells().any(|cell| matches!(cell, Cell::Short(_))).then_some(Digits::Short);
+    let short = || cells().any(|cell| matches!(cell, TableCell::Short(_))).then_some(Digits::Short);
     decimals.max().map(Digits::Decimals).or_else(short)
 }
 
-fn part(cell: &Cell, role: Role) -> Value {
+fn part(cell: &TableCell, role: Role) -> FrameValue {
     match (cell, role) {
-        (Cell::Text(words), Role::Words) => Value::Words(words.clone()),
-        (Cell::Count(count), Role::Count) => Value::Count(*count),
-        (Cell::Count(count), Role::Number) => Value::Number(*count as f64),
-        (Cell::Number(value, _) | Cell::Short(value), Role::Number) => Value::number(*value),
-        (Cell::WithError { value, .. } | Cell::Spread { value, .. }, Role::Number) => Value::number(*value),
-        (Cell::WithError { error, .. }, Role::Error) => Value::number(*error),
-        (Cell::Range([it, _], _) | Cell::Spread { range: [it, _], .. }, Role::Lowest) => Value::number(*it),
-        (Cell::Range([_, it], _) | Cell::Spread { range: [_, it], .. }, Role::Highest) => Value::number(*it),
-        _ => Value::Nothing,
+        (TableCell::Text(words), Role::Words) => FrameValue::Words(words.clone()),
+        (TableCell::Count(count), Role::Count) => FrameValue::Count(*count),
+        (TableCell::Count(count), Role::Number) => FrameValue::Number(*count as f64),
+        (TableCell::Number(value, _) | TableCell::Short(value), Role::Number) => FrameValue::number(*value),
+        (TableCell::WithError { value, .. } | TableCell::Spread { value, .. }, Role::Number) => {
+            FrameValue::number(*value)
+        }
+        (TableCell::WithError { error, .. }, Role::Error) => FrameValue::number(*error),
+        (TableCell::Range([it, _], _) | TableCell::Spread { range: [it, _], .. }, Role::Lowest) => {
+            FrameValue::number(*it)
+        }
+        (TableCell::Range([_, it], _) | TableCell::Spread { range: [_, it], .. }, Role::Highest) => {
+            FrameValue::number(*it)
+        }
+        _ => FrameValue::Nothing,
     }
 }

@@ -1,6 +1,6 @@
 //! Expressions over frames, in the language of the page templates: values of claims and numbers in sentences.
 
-use super::{Frame, Value as Content};
+use super::{FrameValue as Content, ResultFrame};
 use crate::statistics::median;
 use minijinja::value::{Enumerator, Kwargs, Object, ObjectRepr, Value, from_args};
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, State, UndefinedBehavior};
@@ -10,34 +10,34 @@ use stripmine_physics::number::{counted, in_tens, range, significant, with_bar};
 
 /// Names available to an expression: the frames of an item.
 #[derive(Clone, Debug)]
-pub struct Scope(Arc<Names>);
+pub struct ExpressionScope(Arc<ScopeNames>);
 
 /// Frames by name, and the element of a repeated figure.
 #[derive(Clone, Debug)]
-struct Names(BTreeMap<String, Arc<Frame>>, Option<Value>);
+struct ScopeNames(BTreeMap<String, Arc<ResultFrame>>, Option<Value>);
 
 /// Name of the element of a repeated figure.
 const EACH: &str = "it";
 /// Name of a row among its own cells, for columns whose names begin with a digit: `row['1_thread']`.
 const ROW: &str = "row";
 
-impl Scope {
+impl ExpressionScope {
     /// Collects frames by their names, with `_` for `-` and `.`.
-    pub fn of(frames: impl IntoIterator<Item = Frame>) -> Scope {
-        let named = |frame: Frame| (frame.name.replace(['-', '.'], "_"), Arc::new(frame));
-        Scope(Arc::new(Names(frames.into_iter().map(named).collect(), None)))
+    pub fn of(frames: impl IntoIterator<Item = ResultFrame>) -> ExpressionScope {
+        let named = |frame: ResultFrame| (frame.name.replace(['-', '.'], "_"), Arc::new(frame));
+        ExpressionScope(Arc::new(ScopeNames(frames.into_iter().map(named).collect(), None)))
     }
 
     /// Adds an element that expressions call `it`.
-    pub(crate) fn with_it(&self, it: &Value) -> Scope {
-        Scope(Arc::new(Names(self.0.0.clone(), Some(it.clone()))))
+    pub(crate) fn with_it(&self, it: &Value) -> ExpressionScope {
+        ExpressionScope(Arc::new(ScopeNames(self.0.0.clone(), Some(it.clone()))))
     }
 
     /// Returns the frame with a name.
     ///
     /// # Errors
     /// A sentence with the existing names.
-    pub fn frame(&self, name: &str) -> Result<&Arc<Frame>, String> {
+    pub fn frame(&self, name: &str) -> Result<&Arc<ResultFrame>, String> {
         self.0.0.get(name).ok_or_else(|| self.0.missing(name))
     }
 
@@ -46,14 +46,14 @@ impl Scope {
     }
 }
 
-impl Names {
+impl ScopeNames {
     fn missing(&self, name: &str) -> String {
         let names: Vec<&str> = self.0.keys().map(String::as_str).collect();
         format!("there is no table `{name}`; there are {}", names.join(", "))
     }
 }
 
-impl Object for Names {
+impl Object for ScopeNames {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
         let name = key.as_str()?;
         if name == EACH {
@@ -65,9 +65,9 @@ impl Object for Names {
 
 /// A row of a frame, and the element of a repeated figure.
 #[derive(Debug)]
-struct Row(Arc<Frame>, usize, Option<Value>);
+struct FrameRow(Arc<ResultFrame>, usize, Option<Value>);
 
-impl Row {
+impl FrameRow {
     fn cell(&self, column: &str) -> Result<Value, Error> {
         let at = self.0.position(column).map_err(failure)?;
         Ok(shown(&self.0.rows[self.1][at]))
@@ -87,7 +87,7 @@ fn failure(cause: String) -> Error {
     Error::new(ErrorKind::InvalidOperation, cause)
 }
 
-impl Object for Row {
+impl Object for FrameRow {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
         match (key.as_str()?, &self.2) {
             (EACH, Some(it)) => Some(it.clone()),
@@ -98,7 +98,7 @@ impl Object for Row {
 }
 
 /// Exposes a frame as the list of its rows; a frame with a single row also exposes its cells by name.
-impl Object for Frame {
+impl Object for ResultFrame {
     fn repr(self: &Arc<Self>) -> ObjectRepr {
         ObjectRepr::Seq
     }
@@ -106,7 +106,7 @@ impl Object for Frame {
     fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
         if let Some(column) = key.as_str() {
             return match self.rows.len() {
-                1 => Some(Row(Arc::clone(self), 0, None).cell(column).unwrap_or_else(Value::from)),
+                1 => Some(FrameRow(Arc::clone(self), 0, None).cell(column).unwrap_or_else(Value::from)),
                 rows => Some(Value::from(failure(format!(
                     "table `{}` has {rows} rows: `{column}` needs `.at(…)` or `.column('…')`",
                     self.name
@@ -114,7 +114,7 @@ impl Object for Frame {
             };
         }
         let row = key.as_usize().filter(|row| *row < self.rows.len())?;
-        Some(Value::from_object(Row(Arc::clone(self), row, None)))
+        Some(Value::from_object(FrameRow(Arc::clone(self), row, None)))
     }
 
     fn enumerate(self: &Arc<Self>) -> Enumerator {
@@ -134,9 +134,9 @@ impl Object for Frame {
                 match (method, rows.as_slice()) {
                     ("where", _) => {
                         let rows = rows.iter().map(|row| self.rows[*row].clone()).collect();
-                        Ok(Value::from_object(Frame { rows, ..Frame::clone(self) }))
+                        Ok(Value::from_object(ResultFrame { rows, ..ResultFrame::clone(self) }))
                     }
-                    (_, [row]) => Ok(Value::from_object(Row(Arc::clone(self), *row, None))),
+                    (_, [row]) => Ok(Value::from_object(FrameRow(Arc::clone(self), *row, None))),
                     (_, rows) => {
                         let wanted: Vec<String> = wanted
                             .args()
@@ -158,7 +158,7 @@ impl Object for Frame {
     }
 }
 
-impl Frame {
+impl ResultFrame {
     fn rows_where(&self, wanted: &Kwargs) -> Result<Vec<usize>, Error> {
         let mut rows: Vec<usize> = (0..self.rows.len()).collect();
         for name in wanted.args() {
@@ -200,9 +200,9 @@ impl Expressions {
         all.add_filter("digits", significant);
         all.add_filter("tens", in_tens);
         all.add_filter("fixed", |value: f64, decimals: usize| {
-            super::Cell::Number(value, decimals).for_reading()
+            super::TableCell::Number(value, decimals).for_reading()
         });
-        all.add_filter("count", |value: u64| super::Cell::Count(value).for_reading());
+        all.add_filter("count", |value: u64| super::TableCell::Count(value).for_reading());
         all.add_filter("of", |count: u64, one: &str, many: &str| counted(count, one, many));
         Expressions(all)
     }
@@ -211,7 +211,7 @@ impl Expressions {
     ///
     /// # Errors
     /// A sentence with the missing table or column, and the existing ones.
-    pub fn value(&self, expression: &str, scope: &Scope) -> Result<Value, String> {
+    pub fn value(&self, expression: &str, scope: &ExpressionScope) -> Result<Value, String> {
         let compiled = self.0.compile_expression(expression).map_err(|cause| said(&cause, scope))?;
         let value = compiled.eval(scope.value()).map_err(|cause| said(&cause, scope))?;
         match value.is_undefined() {
@@ -227,12 +227,12 @@ impl Expressions {
     pub(crate) fn of_row(
         &self,
         expression: &str,
-        scope: &Scope,
-        frame: &Arc<Frame>,
+        scope: &ExpressionScope,
+        frame: &Arc<ResultFrame>,
         row: usize,
     ) -> Result<Value, String> {
         let compiled = self.0.compile_expression(expression).map_err(|cause| cause.to_string())?;
-        let value = compiled.eval(Value::from_object(Row(Arc::clone(frame), row, scope.0.1.clone())));
+        let value = compiled.eval(Value::from_object(FrameRow(Arc::clone(frame), row, scope.0.1.clone())));
         value.map_err(|cause| cause.detail().map_or_else(|| cause.to_string(), str::to_owned))
     }
 
@@ -240,14 +240,14 @@ impl Expressions {
     ///
     /// # Errors
     /// The line within the text, and a sentence with the missing table or column, and the existing ones.
-    pub fn text(&self, template: &str, scope: &Scope) -> Result<String, (usize, String)> {
+    pub fn text(&self, template: &str, scope: &ExpressionScope) -> Result<String, (usize, String)> {
         let filled = self.0.render_str(template, scope.value());
         filled.map_err(|cause| (cause.line().unwrap_or(1), said(&cause, scope)))
     }
 }
 
 /// Describes an error in a sentence, with the existing names where one is missing.
-fn said(cause: &Error, scope: &Scope) -> String {
+fn said(cause: &Error, scope: &ExpressionScope) -> String {
     let inner = std::error::Error::source(cause).map(ToString::to_string);
     let detail = cause.detail().map(str::to_owned).or(inner).unwrap_or_default();
     match cause.kind() {
@@ -263,16 +263,17 @@ fn said(cause: &Error, scope: &Scope) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Rows;
+    use crate::frame::FrameBuilder;
 
-    fn scope() -> Scope {
-        let errors = Rows::of([("leapfrog", 64u64, 0.5), ("leapfrog", 128, 0.125), ("euler", 64, 2.0)])
-            .text("scheme", |it| it.0)
-            .count("steps", |it| it.1)
-            .number("error", 3, |it| it.2)
-            .frame("look-up", "Errors");
-        let summary = Rows::of([()]).number("worst", 2, |()| 2.5e-7).frame("summary", "Summary");
-        Scope::of([errors, summary])
+    fn scope() -> ExpressionScope {
+        let errors =
+            FrameBuilder::of([("leapfrog", 64u64, 0.5), ("leapfrog", 128, 0.125), ("euler", 64, 2.0)])
+                .text("scheme", |it| it.0)
+                .count("steps", |it| it.1)
+                .number("error", 3, |it| it.2)
+                .frame("look-up", "Errors");
+        let summary = FrameBuilder::of([()]).number("worst", 2, |()| 2.5e-7).frame("summary", "Summary");
+        ExpressionScope::of([errors, summary])
     }
 
     #[test]

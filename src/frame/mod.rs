@@ -10,8 +10,8 @@ mod rows;
 mod table;
 
 pub(crate) use columns::Role;
-pub use columns::{Column, Digits, Frame, Value};
-pub use expression::{Expressions, Scope};
-pub use rows::Rows;
-pub use table::Cell;
-pub(crate) use table::Table;
+pub use columns::{Digits, FrameColumn, FrameValue, ResultFrame};
+pub use expression::{ExpressionScope, Expressions};
+pub use rows::FrameBuilder;
+pub(crate) use table::FormattedTable;
+pub use table::TableCell;

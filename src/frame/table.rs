@@ -1,12 +1,12 @@
 //! Tables for reading: cells under headings.
 
-use super::{Digits, Value};
+use super::{Digits, FrameValue};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::number::{in_tens, significant};
 
 /// Content of a cell of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Cell {
+pub enum TableCell {
     /// Words.
     Text(String),
     /// A count.
@@ -39,95 +39,95 @@ pub enum Cell {
     Nothing,
 }
 
-impl Cell {
+impl TableCell {
     /// A number with its error; a plain number where it has none.
-    pub(crate) fn with_error(value: f64, error: Option<f64>, decimals: usize) -> Cell {
+    pub(crate) fn with_error(value: f64, error: Option<f64>, decimals: usize) -> TableCell {
         match error {
-            Some(error) => Cell::WithError { value, error, decimals },
-            None => Cell::Number(value, decimals),
+            Some(error) => TableCell::WithError { value, error, decimals },
+            None => TableCell::Number(value, decimals),
         }
     }
 
     /// Formats the cell for reading, with grouped thousands.
     pub(crate) fn for_reading(&self) -> String {
         match self {
-            Cell::Text(text) => text.clone(),
-            Cell::Count(count) => grouped(&count.to_string()),
-            Cell::Number(value, decimals) => decimal(*value, *decimals),
-            Cell::Short(value) => short(*value),
-            Cell::WithError { value, error, decimals } => {
+            TableCell::Text(text) => text.clone(),
+            TableCell::Count(count) => grouped(&count.to_string()),
+            TableCell::Number(value, decimals) => decimal(*value, *decimals),
+            TableCell::Short(value) => short(*value),
+            TableCell::WithError { value, error, decimals } => {
                 format!("{} ± {}", decimal(*value, *decimals), decimal(*error, *decimals))
             }
-            Cell::Range([lowest, highest], decimals) => {
+            TableCell::Range([lowest, highest], decimals) => {
                 format!("{} to {}", decimal(*lowest, *decimals), decimal(*highest, *decimals))
             }
-            Cell::Spread { value, range, decimals } => {
-                let range = Cell::Range(*range, *decimals).for_reading();
+            TableCell::Spread { value, range, decimals } => {
+                let range = TableCell::Range(*range, *decimals).for_reading();
                 format!("{} ({range})", decimal(*value, *decimals))
             }
-            Cell::Nothing => "–".to_owned(),
+            TableCell::Nothing => "–".to_owned(),
         }
     }
 
     /// True if it is right-aligned.
     pub fn is_number(&self) -> bool {
-        !matches!(self, Cell::Text(_))
+        !matches!(self, TableCell::Text(_))
     }
 }
 
-impl Cell {
+impl TableCell {
     /// Combines the columns of one heading to a cell: number, count, error, lowest, highest, words.
-    pub(super) fn of(parts: [Option<Value>; 6], digits: Option<Digits>) -> Cell {
+    pub(super) fn of(parts: [Option<FrameValue>; 6], digits: Option<Digits>) -> TableCell {
         let decimals = match digits {
             Some(Digits::Decimals(decimals)) => decimals,
             _ => 0,
         };
         match parts {
-            [Some(Value::Number(value)), _, Some(Value::Number(error)), ..] => {
-                Cell::WithError { value, error, decimals }
+            [Some(FrameValue::Number(value)), _, Some(FrameValue::Number(error)), ..] => {
+                TableCell::WithError { value, error, decimals }
             }
             [
-                Some(Value::Number(value)),
+                Some(FrameValue::Number(value)),
                 _,
                 _,
-                Some(Value::Number(lowest)),
-                Some(Value::Number(highest)),
+                Some(FrameValue::Number(lowest)),
+                Some(FrameValue::Number(highest)),
                 _,
-            ] => Cell::Spread { value, range: [lowest, highest], decimals },
-            [Some(Value::Number(value)), ..] if digits == Some(Digits::Short) => Cell::Short(value),
-            [Some(Value::Number(value)), ..] => Cell::Number(value, decimals),
-            [_, Some(Value::Count(count)), ..] => Cell::Count(count),
-            [_, _, _, Some(Value::Number(lowest)), Some(Value::Number(highest)), _] => {
-                Cell::Range([lowest, highest], decimals)
+            ] => TableCell::Spread { value, range: [lowest, highest], decimals },
+            [Some(FrameValue::Number(value)), ..] if digits == Some(Digits::Short) => TableCell::Short(value),
+            [Some(FrameValue::Number(value)), ..] => TableCell::Number(value, decimals),
+            [_, Some(FrameValue::Count(count)), ..] => TableCell::Count(count),
+            [_, _, _, Some(FrameValue::Number(lowest)), Some(FrameValue::Number(highest)), _] => {
+                TableCell::Range([lowest, highest], decimals)
             }
-            [.., Some(Value::Words(words))] => Cell::Text(words),
-            _ => Cell::Nothing,
+            [.., Some(FrameValue::Words(words))] => TableCell::Text(words),
+            _ => TableCell::Nothing,
         }
     }
 }
 
-impl From<&str> for Cell {
+impl From<&str> for TableCell {
     fn from(text: &str) -> Self {
-        Cell::Text(text.to_owned())
+        TableCell::Text(text.to_owned())
     }
 }
 
-impl From<String> for Cell {
+impl From<String> for TableCell {
     fn from(text: String) -> Self {
-        Cell::Text(text)
+        TableCell::Text(text)
     }
 }
 
-impl From<u64> for Cell {
+impl From<u64> for TableCell {
     fn from(count: u64) -> Self {
-        Cell::Count(count)
+        TableCell::Count(count)
     }
 }
 
 /// Converts none to an empty cell.
-impl<T: Into<Cell>> From<Option<T>> for Cell {
+impl<T: Into<TableCell>> From<Option<T>> for TableCell {
     fn from(value: Option<T>) -> Self {
-        value.map_or(Cell::Nothing, Into::into)
+        value.map_or(TableCell::Nothing, Into::into)
     }
 }
 
@@ -164,23 +164,23 @@ fn grouped(digits: &str) -> String {
 
 /// A titled table with notes below.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Table {
+pub(crate) struct FormattedTable {
     /// Name for files, in lower case.
     pub name: String,
     pub title: String,
     pub columns: Vec<String>,
     /// Rows, each as long as the headings.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<TableCell>>,
     /// Notes that a reader needs.
     pub(crate) notes: Vec<String>,
 }
 
-impl Table {
-    pub(crate) fn note(self, note: impl Into<String>) -> Table {
+impl FormattedTable {
+    pub(crate) fn note(self, note: impl Into<String>) -> FormattedTable {
         self.notes([note])
     }
 
-    pub(crate) fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> Table {
+    pub(crate) fn notes(mut self, notes: impl IntoIterator<Item = impl Into<String>>) -> FormattedTable {
         self.notes.extend(notes.into_iter().map(Into::into));
         self
     }
@@ -192,16 +192,16 @@ mod tests {
 
     #[test]
     fn numbers_are_grouped_for_people() {
-        assert_eq!(Cell::Number(1_234_567.891, 2).for_reading(), "1\u{202f}234\u{202f}567.89");
-        assert_eq!(Cell::Number(-123_456.0, 0).for_reading(), "-123\u{202f}456");
-        assert_eq!(Cell::Count(999).for_reading(), "999");
-        let with_error = Cell::WithError { value: 1234.56, error: 0.26, decimals: 1 };
+        assert_eq!(TableCell::Number(1_234_567.891, 2).for_reading(), "1\u{202f}234\u{202f}567.89");
+        assert_eq!(TableCell::Number(-123_456.0, 0).for_reading(), "-123\u{202f}456");
+        assert_eq!(TableCell::Count(999).for_reading(), "999");
+        let with_error = TableCell::WithError { value: 1234.56, error: 0.26, decimals: 1 };
         assert_eq!(with_error.for_reading(), "1\u{202f}234.6 ± 0.3");
-        assert_eq!(Cell::Range([0.18, 0.43], 2).for_reading(), "0.18 to 0.43");
-        let spread = Cell::Spread { value: 1.71, range: [1.28, 2.02], decimals: 1 };
+        assert_eq!(TableCell::Range([0.18, 0.43], 2).for_reading(), "0.18 to 0.43");
+        let spread = TableCell::Spread { value: 1.71, range: [1.28, 2.02], decimals: 1 };
         assert_eq!(spread.for_reading(), "1.7 (1.3 to 2.0)");
         assert_eq!(
-            [4.2e-4, 0.031, 12.0].map(|it| Cell::Short(it).for_reading()),
+            [4.2e-4, 0.031, 12.0].map(|it| TableCell::Short(it).for_reading()),
             ["4.2·10⁻⁴", "0.031", "12"]
         );
     }

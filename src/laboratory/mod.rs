@@ -10,9 +10,9 @@ pub(crate) mod programs;
 pub(crate) mod rates;
 mod running;
 
-use crate::console::{Common, Failure, Verb, say};
+use crate::console::{CommandFailure, Common, Verb, say};
 use crate::provenance::Provenance;
-use crate::results::{Folder, Item, Made};
+use crate::results::{FinishedItem, Folder, Item};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
 use stripmine_physics::signals;
@@ -29,7 +29,7 @@ pub(crate) struct Laboratory {
     /// Studies that only this method has, as verbs below `chart`.
     pub(crate) charts: &'static [Verb],
     /// Work timed by its studies that is not a run of a scene.
-    pub works: &'static [rates::Own],
+    pub works: &'static [rates::StudyWork],
 }
 
 /// One laboratory for every method that is studied.
@@ -46,10 +46,10 @@ pub(crate) fn laboratories(methods: Methods) -> impl Iterator<Item = &'static La
 /// Writes the result of a verb that began at `start` to its folder and reports the path. Returns the paragraphs of its page.
 fn written(
     folder: &Folder,
-    (name, made): (&str, &Made),
+    (name, made): (&str, &FinishedItem),
     start: Instant,
     common: &Common,
-) -> Result<String, Failure> {
+) -> Result<String, CommandFailure> {
     let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
     let (folder, section) = signals::whole(|| folder.write(name, made, &provenance))?;
     if !common.quiet {

@@ -1,20 +1,24 @@
 //! Vector programs: operations of a step by section, and clock periods by every clock model.
 
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::model::clock::{Clock, Work};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::model::clock::{Clock, ProgramWork};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::results::Made;
-use stripmine_physics::method::{Counted, Prepared, VectorProgram};
+use crate::results::FinishedItem;
+use stripmine_physics::method::{Prepared, SectionCounts, VectorProgram};
 
 /// Machines whose clock periods an item shows.
 const MACHINES: [&str; 2] = ["cray-y-mp-el", "sx-aurora"];
 
 /// Operations of a step, and its time on some machines.
-pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[MachineModel]) -> [Frame; 2] {
-    let works: Vec<(Work, &VectorProgram)> =
-        programs.iter().map(|it| (Work::of(it.program.as_ref()), it)).collect();
+pub(crate) fn counted(
+    scene: &str,
+    programs: &[VectorProgram],
+    machines: &[MachineModel],
+) -> [ResultFrame; 2] {
+    let works: Vec<(ProgramWork, &VectorProgram)> =
+        programs.iter().map(|it| (ProgramWork::of(it.program.as_ref()), it)).collect();
     let charged = |machine: &MachineModel, clock: Clock| -> f64 {
         let each = works.iter().map(|(work, it)| it.times as f64 * clock.clocks(machine, work, it.n as u64));
         each.sum()
@@ -24,7 +28,7 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
         Clock::ALL.iter().map(move |&clock| (machine, clock, charged(machine, clock)))
     });
     [
-        Rows::of(Counted::of(programs))
+        FrameBuilder::of(SectionCounts::of(programs))
             .text("part", |it| it.part)
             .text("section", |it| it.section)
             .text("n is", |it| it.length)
@@ -33,7 +37,7 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
             .count("of them computing", |it| it.computing)
             .count("divisions and roots", |it| it.divisions_and_roots)
             .frame("operations", format!("{scene}: whole-array operations of a step")),
-        Rows::of(clocks)
+        FrameBuilder::of(clocks)
             .text("machine", |(machine, ..)| machine.title())
             .text("clock", |(_, clock, _)| clock.name())
             .number("clock periods", 0, |(.., clocks)| *clocks)
@@ -43,13 +47,13 @@ pub(crate) fn counted(scene: &str, programs: &[VectorProgram], machines: &[Machi
 }
 
 /// Item with the frames of some scenes, numbered in their order, and the listing of the first program.
-pub(crate) fn made(scenes: &[(&str, Prepared)]) -> Result<Made, Failure> {
+pub(crate) fn made(scenes: &[(&str, Prepared)]) -> Result<FinishedItem, CommandFailure> {
     let machines: Vec<MachineModel> =
         MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;
-    let mut made = Made::default().with_seeds([1]);
+    let mut made = FinishedItem::default().with_seeds([1]);
     for (number, (scene, prepared)) in (1..).zip(scenes) {
         let programs = prepared.model.programs();
-        let numbered = |frame: Frame| Frame { name: format!("{}-{number}", frame.name), ..frame };
+        let numbered = |frame: ResultFrame| ResultFrame { name: format!("{}-{number}", frame.name), ..frame };
         made.frames.extend(counted(scene, &programs, &machines).map(numbered));
         if number == 1
             && let Some(first) = programs.first()

@@ -7,71 +7,75 @@
 mod case;
 mod process;
 
-pub(crate) use case::{Case, Own, Reading, given};
+pub(crate) use case::{CaseReading, RateCase, StudyWork, given};
 pub(crate) use process::{VERB, serve};
 
-use crate::console::Failure;
-use crate::frame::{Cell, Frame, Rows};
-use crate::results::Lab;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::results::StudyEnvironment;
 use crate::statistics::median;
-use process::Failed;
+use process::ProcessFailure;
 
 /// Number of processes that measure every case, one after the other.
 pub(crate) const PROCESSES: usize = 3;
 
 /// Value measured by several processes: median and range.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Spread {
+pub(crate) struct ProcessSpread {
     /// Median process.
     pub(crate) median: f64,
     /// Lowest and highest process.
     pub range: [f64; 2],
 }
 
-impl Spread {
+impl ProcessSpread {
     /// Median and range of the values of the processes.
-    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Spread {
+    pub(crate) fn of(values: impl Iterator<Item = f64>) -> ProcessSpread {
         let values: Vec<f64> = values.collect();
         let least = |sign: f64| sign * values.iter().map(|value| sign * value).fold(f64::INFINITY, f64::min);
-        Spread { median: median(values.iter().copied()), range: [1.0, -1.0].map(least) }
+        ProcessSpread { median: median(values.iter().copied()), range: [1.0, -1.0].map(least) }
     }
 
     /// Returns a table cell with the value multiplied by `scale`.
-    pub(crate) fn cell(self, scale: f64, decimals: usize) -> Cell {
-        Cell::Spread { value: scale * self.median, range: self.range.map(|value| scale * value), decimals }
+    pub(crate) fn cell(self, scale: f64, decimals: usize) -> TableCell {
+        TableCell::Spread {
+            value: scale * self.median,
+            range: self.range.map(|value| scale * value),
+            decimals,
+        }
     }
 }
 
 /// Readings of one case from all processes.
 #[derive(Clone, Debug)]
-pub(crate) struct Measured {
-    labels: Vec<(String, Cell)>,
+pub(crate) struct MeasuredCase {
+    labels: Vec<(String, TableCell)>,
     /// Reading of each process.
-    pub(crate) readings: Vec<Reading>,
+    pub(crate) readings: Vec<CaseReading>,
 }
 
-impl Measured {
+impl MeasuredCase {
     /// Makes a case without labels.
-    pub(crate) fn of(readings: impl IntoIterator<Item = Reading>) -> Measured {
-        Measured { labels: vec![], readings: readings.into_iter().collect() }
+    pub(crate) fn of(readings: impl IntoIterator<Item = CaseReading>) -> MeasuredCase {
+        MeasuredCase { labels: vec![], readings: readings.into_iter().collect() }
     }
 
-    fn each(&self, of: impl Fn(&Reading) -> f64) -> Spread {
-        Spread::of(self.readings.iter().map(of))
+    fn each(&self, of: impl Fn(&CaseReading) -> f64) -> ProcessSpread {
+        ProcessSpread::of(self.readings.iter().map(of))
     }
 
     /// Work per second.
-    pub(crate) fn rate(&self) -> Spread {
+    pub(crate) fn rate(&self) -> ProcessSpread {
         self.each(|it| it.work / it.seconds)
     }
 
     /// Seconds per unit of work.
-    pub(crate) fn cost(&self) -> Spread {
+    pub(crate) fn cost(&self) -> ProcessSpread {
         self.each(|it| it.seconds / it.work)
     }
 
     /// Seconds of a part per unit of work.
-    pub(crate) fn part(&self, name: &str) -> Spread {
+    pub(crate) fn part(&self, name: &str) -> ProcessSpread {
         self.each(|it| it.parts.get(name).copied().unwrap_or(0.0) / it.work)
     }
 
@@ -81,20 +85,22 @@ impl Measured {
     }
 
     /// Ratio of the rate to that of another case, process by process.
-    pub(crate) fn over(&self, other: &Measured) -> Spread {
-        let rate = |it: &Reading| it.work / it.seconds;
-        Spread::of(self.readings.iter().zip(&other.readings).map(|(own, other)| rate(own) / rate(other)))
+    pub(crate) fn over(&self, other: &MeasuredCase) -> ProcessSpread {
+        let rate = |it: &CaseReading| it.work / it.seconds;
+        ProcessSpread::of(
+            self.readings.iter().zip(&other.readings).map(|(own, other)| rate(own) / rate(other)),
+        )
     }
 }
 
 /// Frame of the rates, one row per case in the given order, with the labels as columns. Every case has the labels of the first.
 pub(crate) fn frame(
-    measured: &[Measured],
+    measured: &[MeasuredCase],
     (name, title): (&str, &str),
     (heading, scale, decimals): (&str, f64, usize),
-) -> Frame {
+) -> ResultFrame {
     let headings = measured.first().map_or(vec![], |it| it.labels.iter().map(|(it, _)| it.clone()).collect());
-    Rows::of(measured)
+    FrameBuilder::of(measured)
         .cells(headings, |it| it.labels.iter().map(|(_, value)| value.clone()).collect::<Vec<_>>())
         .cell(heading, |it| it.rate().cell(scale, decimals))
         .count("processes", |it| it.readings.len())
@@ -102,7 +108,10 @@ pub(crate) fn frame(
 }
 
 /// Measures cases in [`PROCESSES`] processes, one after the other.
-pub(crate) fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Failure> {
+pub(crate) fn rates(
+    lab: &StudyEnvironment<'_>,
+    cases: &[RateCase],
+) -> Result<Vec<MeasuredCase>, CommandFailure> {
     rounds(cases, lab.progress, |cases, heard| match &lab.program {
         Some(program) => process::measure(program, cases, heard),
         None => cases.iter().try_for_each(|case| {
@@ -115,16 +124,16 @@ pub(crate) fn rates(lab: &Lab<'_>, cases: &[Case]) -> Result<Vec<Measured>, Fail
 
 /// Runs the rounds; `round` measures some cases in order and passes on each reading.
 fn rounds(
-    cases: &[Case],
+    cases: &[RateCase],
     progress: &dyn Fn(f64),
-    mut round: impl FnMut(&[&Case], &mut dyn FnMut(Reading)) -> Result<(), Failed>,
-) -> Result<Vec<Measured>, Failure> {
-    let labelled = |case: &Case| Measured { labels: case.labels.clone(), ..Measured::of([]) };
-    let mut all: Vec<Measured> = cases.iter().map(labelled).collect();
+    mut round: impl FnMut(&[&RateCase], &mut dyn FnMut(CaseReading)) -> Result<(), ProcessFailure>,
+) -> Result<Vec<MeasuredCase>, CommandFailure> {
+    let labelled = |case: &RateCase| MeasuredCase { labels: case.labels.clone(), ..MeasuredCase::of([]) };
+    let mut all: Vec<MeasuredCase> = cases.iter().map(labelled).collect();
     let rounds = if cases.is_empty() { 0 } else { PROCESSES };
     for number in 0..rounds {
         let order = order(cases.len(), number);
-        let in_order: Vec<&Case> = order.iter().map(|&at| &cases[at]).collect();
+        let in_order: Vec<&RateCase> = order.iter().map(|&at| &cases[at]).collect();
         let mut heard = 0;
         let outcome = round(&in_order, &mut |reading| {
             if let Some(&at) = order.get(heard) {
@@ -135,7 +144,7 @@ fn rounds(
         });
         outcome.map_err(|(class, said)| {
             let process = in_order.get(heard).map_or_else(String::new, |case| case.name());
-            Failure::OfProcess { process: format!("measuring {process}"), class, said }
+            CommandFailure::OfProcess { process: format!("measuring {process}"), class, said }
         })?;
     }
     Ok(all)
@@ -151,17 +160,17 @@ fn order(cases: usize, round: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Value;
+    use crate::frame::FrameValue;
     use std::cell::RefCell;
-    use stripmine_physics::reported::Class;
+    use stripmine_physics::reported::ErrorClass;
     use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
-    fn reading(seconds: f64) -> Reading {
-        Reading { work: 12.0, seconds, ..Reading::default() }
+    fn reading(seconds: f64) -> CaseReading {
+        CaseReading { work: 12.0, seconds, ..CaseReading::default() }
     }
 
-    fn cases(count: u64) -> Vec<Case> {
-        let case = |at| Case::steps("bench", &Overrides::new(), 0, 1).label("case", at);
+    fn cases(count: u64) -> Vec<RateCase> {
+        let case = |at| RateCase::steps("bench", &Overrides::new(), 0, 1).label("case", at);
         (0..count).map(case).collect()
     }
 
@@ -174,8 +183,8 @@ mod tests {
             // Times by the case and the round.
             let all = rounds(&cases(count), &progress, |cases, heard| {
                 let number = orders.borrow().len() as f64;
-                let at = |case: &Case| match case.labels[0].1 {
-                    Cell::Count(at) => at,
+                let at = |case: &RateCase| match case.labels[0].1 {
+                    TableCell::Count(at) => at,
                     _ => 0,
                 };
                 cases.iter().for_each(|case| heard(reading((at(case) + 1) as f64 + 0.25 * number)));
@@ -190,10 +199,10 @@ mod tests {
             }
             for (at, row) in frame.rows.iter().enumerate() {
                 let [slow, middle, fast] = [0.5, 0.25, 0.0].map(|more| 12.0 / ((at + 1) as f64 + more));
-                let rates = [middle, slow, fast].map(Value::Number);
-                assert_eq!(row[0], Value::Count(at as u64));
+                let rates = [middle, slow, fast].map(FrameValue::Number);
+                assert_eq!(row[0], FrameValue::Count(at as u64));
                 assert_eq!(row[1..4], rates);
-                assert_eq!(row[4], Value::Count(PROCESSES as u64));
+                assert_eq!(row[4], FrameValue::Count(PROCESSES as u64));
             }
             for order in orders.borrow().iter() {
                 let mut sorted = order.clone();
@@ -213,13 +222,13 @@ mod tests {
     /// The error names the failed case and has the class and message of the process.
     #[test]
     fn a_failure_names_its_case() {
-        let failed = |cases: &[&Case], heard: &mut dyn FnMut(Reading)| {
+        let failed = |cases: &[&RateCase], heard: &mut dyn FnMut(CaseReading)| {
             assert_eq!(cases.len(), 3);
             heard(reading(1.0));
-            Err((Some(Class::Precondition), "disc 3 left the box".to_owned()))
+            Err((Some(ErrorClass::Precondition), "disc 3 left the box".to_owned()))
         };
         let failure = rounds(&cases(3), &|_| (), failed).unwrap_err();
-        assert_eq!(failure.exit_code(), Class::Precondition.exit_code());
+        assert_eq!(failure.exit_code(), ErrorClass::Precondition.exit_code());
         assert_eq!(failure.words(), "measuring case = 1: disc 3 left the box");
     }
 
@@ -227,9 +236,9 @@ mod tests {
     #[test]
     fn readings_count_work_and_operations() {
         let discs = Overrides::new().set(&COUNT, 64_u64).set(&PACKING_FRACTION, 0.3);
-        let events = |name: &str| Case::events("hard-disks", &discs, 50, 200).label("name", name);
-        let steps = Case::steps("bench", &discs, 2, 3).label("name", "steps").on_threads(2);
-        let lab = Lab::here(&|_| ());
+        let events = |name: &str| RateCase::events("hard-disks", &discs, 50, 200).label("name", name);
+        let steps = RateCase::steps("bench", &discs, 2, 3).label("name", "steps").on_threads(2);
+        let lab = StudyEnvironment::here(&|_| ());
         let all = rates(&lab, &[events("a"), events("b"), steps]).unwrap();
         let works = |at: usize| all[at].readings.iter().map(|it| it.work).collect::<Vec<_>>();
         assert_eq!([works(0), works(1)], [[200.0; PROCESSES]; 2]);
@@ -244,9 +253,9 @@ mod tests {
     #[test]
     fn a_rejected_scene_names_its_case() {
         let none = Overrides::new().set(&COUNT, 0_u64);
-        let case = Case::steps("bench", &none, 0, 1).label("discs", 0);
-        let failure = rates(&Lab::here(&|_| ()), &[case]).unwrap_err();
-        assert_eq!(failure.exit_code(), Class::Input.exit_code());
+        let case = RateCase::steps("bench", &none, 0, 1).label("discs", 0);
+        let failure = rates(&StudyEnvironment::here(&|_| ()), &[case]).unwrap_err();
+        assert_eq!(failure.exit_code(), ErrorClass::Input.exit_code());
         assert!(failure.words().starts_with("measuring discs = 0: "), "{}", failure.words());
     }
 }

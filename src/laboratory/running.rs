@@ -5,7 +5,9 @@ use crate::study::StudyError;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::observed::{UnknownName, observed};
-use stripmine_physics::method::{self, Entry, METHODS, Prepared, Purpose, Quantity, Simulation, Until, load};
+use stripmine_physics::method::{
+    self, METHODS, MethodEntry, ObservedQuantity, Prepared, Simulation, StartPurpose, Until, load,
+};
 use stripmine_physics::scene::Overrides;
 
 /// Prepares a preset with overrides.
@@ -37,50 +39,50 @@ pub(crate) fn bisected<T: Copy, E>(
 }
 
 /// Running scene.
-pub(crate) struct Running {
+pub(crate) struct RunningScene {
     /// Simulation in its present state.
     pub simulation: Box<dyn Simulation>,
     /// The box.
     pub domain: Domain,
-    quantities: &'static [Quantity],
+    quantities: &'static [ObservedQuantity],
 }
 
-impl Running {
+impl RunningScene {
     /// Starts a preset with overrides, with all observables.
-    pub(super) fn begin(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
+    pub(super) fn begin(preset: &str, overrides: &Overrides) -> Result<RunningScene, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
-        Running::of(method, &prepared, Purpose::Run)
+        RunningScene::of(method, &prepared, StartPurpose::Run)
     }
 
     /// Starts a preset with overrides for timing: only quantities that the motion needs are tracked.
-    pub(crate) fn timed(preset: &str, overrides: &Overrides) -> Result<Running, StudyError> {
+    pub(crate) fn timed(preset: &str, overrides: &Overrides) -> Result<RunningScene, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
-        Running::of(method, &prepared, Purpose::Measurement)
+        RunningScene::of(method, &prepared, StartPurpose::Measurement)
     }
 
     /// Starts a prepared scene of a method.
     pub(super) fn of(
-        method: &'static Entry,
+        method: &'static MethodEntry,
         prepared: &Prepared,
-        purpose: Purpose,
-    ) -> Result<Running, StudyError> {
+        purpose: StartPurpose,
+    ) -> Result<RunningScene, StudyError> {
         prepared.memory.fits("scene")?;
         let (simulation, domain) = (prepared.start(purpose)?, prepared.domain);
-        Ok(Running { simulation, domain, quantities: method.quantities })
+        Ok(RunningScene { simulation, domain, quantities: method.quantities })
     }
 
     /// Advances by some steps.
-    pub(super) fn steps(&mut self, steps: u64) -> Result<(), method::Failure> {
+    pub(super) fn steps(&mut self, steps: u64) -> Result<(), method::PhysicsFailure> {
         self.until(Until::Steps(steps).after(&self.simulation.clock()))
     }
 
     /// Advances by some events.
-    pub(super) fn events(&mut self, events: u64) -> Result<(), method::Failure> {
+    pub(super) fn events(&mut self, events: u64) -> Result<(), method::PhysicsFailure> {
         self.until(Until::Events(events).after(&self.simulation.clock()))
     }
 
     /// Advances to a moment.
-    pub(super) fn until(&mut self, moment: Until) -> Result<(), method::Failure> {
+    pub(super) fn until(&mut self, moment: Until) -> Result<(), method::PhysicsFailure> {
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
 

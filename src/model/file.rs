@@ -6,7 +6,9 @@
 use serde::de::DeserializeOwned;
 use std::ops::Range;
 use std::path::Path;
-use stripmine_physics::input::{InputError, InputErrors, InputText, Mistakes, Reason, Spot, read_text};
+use stripmine_physics::input::{
+    InputError, InputErrors, InputText, MistakeKind, MistakeList, Spot, read_text,
+};
 use stripmine_physics::quoted::one_line;
 use stripmine_physics::words::nearest;
 use toml::Spanned;
@@ -18,19 +20,19 @@ const LONGEST: u64 = 4 << 20;
 const WHOLE: Range<usize> = 0..usize::MAX;
 
 /// A kind of file, which is read into a `T`.
-pub(super) struct Kind<T> {
+pub(super) struct FileKind<T> {
     /// Format version that this program reads.
     pub(super) format: u32,
     /// Advice for other versions.
     pub(super) remedy: Option<&'static str>,
     /// Describes an error of a single value, if any.
-    pub(super) wrong: fn(&Entry<'_>) -> Option<String>,
+    pub(super) wrong: fn(&FileEntry<'_>) -> Option<String>,
     /// Completes the file, or returns the path of an entry that contradicts others, and why.
     pub(super) completed: fn(T) -> Result<T, (String, String)>,
 }
 
 /// A value of a file.
-pub(super) struct Entry<'t> {
+pub(super) struct FileEntry<'t> {
     /// Names of the tables around it, and its own.
     pub(super) names: Vec<&'t str>,
     pub(super) value: &'t DeValue<'t>,
@@ -38,7 +40,7 @@ pub(super) struct Entry<'t> {
     spans: [Range<usize>; 2],
 }
 
-impl Entry<'_> {
+impl FileEntry<'_> {
     /// Its names, joined by dots.
     pub(super) fn path(&self) -> String {
         self.names.join(".")
@@ -59,8 +61,8 @@ impl Entry<'_> {
 }
 
 /// Lists a value and everything in it, with names and byte ranges.
-fn entries<'t>(names: Vec<&'t str>, spans: [Range<usize>; 2], value: &'t DeValue<'t>) -> Vec<Entry<'t>> {
-    let mut all = vec![Entry { names: names.clone(), value, spans }];
+fn entries<'t>(names: Vec<&'t str>, spans: [Range<usize>; 2], value: &'t DeValue<'t>) -> Vec<FileEntry<'t>> {
+    let mut all = vec![FileEntry { names: names.clone(), value, spans }];
     match value {
         DeValue::Table(table) => all.extend(table.iter().flat_map(|(name, value)| {
             let spans = [name.span(), value.span()];
@@ -85,7 +87,7 @@ fn remove(table: &mut DeTable<'_>, names: &[&str]) -> bool {
     }
 }
 
-impl<T: DeserializeOwned> Kind<T> {
+impl<T: DeserializeOwned> FileKind<T> {
     /// Reads a file.
     ///
     /// # Errors
@@ -93,7 +95,7 @@ impl<T: DeserializeOwned> Kind<T> {
     pub(super) fn load(&self, path: &Path) -> Result<T, InputErrors> {
         let file = path.display().to_string();
         let nowhere = Spot { file: file.clone(), place: None };
-        let text = read_text(path, LONGEST, |cause| nowhere.error(Reason::System, cause.to_string()))?;
+        let text = read_text(path, LONGEST, |cause| nowhere.error(MistakeKind::System, cause.to_string()))?;
         self.read(&file, &text)
     }
 
@@ -112,18 +114,19 @@ impl<T: DeserializeOwned> Kind<T> {
             && found != f64::from(self.format)
         {
             let what = format!("`format` is {found}, but this program reads {}", self.format);
-            let error = text.spot(it.at()).error(Reason::Format, what);
+            let error = text.spot(it.at()).error(MistakeKind::Format, what);
             return Err(self.remedy.map_or(error.clone(), |remedy| error.advising(remedy)).into());
         }
-        let mut mistakes = Mistakes::default();
-        let wrong =
-            |it: &Entry<'_>| Some(text.spot(it.at()).error(Reason::Range, one_line(&(self.wrong)(it)?)));
+        let mut mistakes = MistakeList::default();
+        let wrong = |it: &FileEntry<'_>| {
+            Some(text.spot(it.at()).error(MistakeKind::Range, one_line(&(self.wrong)(it)?)))
+        };
         mistakes.extend(entries.iter().filter_map(wrong));
         let read = deserialized(&text, table, &entries, &mut mistakes);
         mistakes.none_of(file)?;
         (self.completed)(read?).map_err(|(path, what)| {
             let entry = entries.iter().find(|it| it.path() == path);
-            text.spot(entry.map_or(0, Entry::at)).error(Reason::Contradiction, what).into()
+            text.spot(entry.map_or(0, FileEntry::at)).error(MistakeKind::Contradiction, what).into()
         })
     }
 }
@@ -132,8 +135,8 @@ impl<T: DeserializeOwned> Kind<T> {
 fn deserialized<T: DeserializeOwned>(
     text: &InputText<'_>,
     mut table: DeTable<'_>,
-    entries: &[Entry<'_>],
-    mistakes: &mut Mistakes,
+    entries: &[FileEntry<'_>],
+    mistakes: &mut MistakeList,
 ) -> Result<T, InputError> {
     // Entries missing because they were wrong or misspelt are not reported again.
     let mut gone: Vec<String> = vec![];
@@ -150,7 +153,7 @@ fn deserialized<T: DeserializeOwned>(
         let is_of_value = entry.is_some_and(|it| it.spans[1] == span) && !names.is_empty();
         let prefix = if is_of_value { format!("`{path}`: ") } else { String::new() };
         let spot = text.spot(if names.is_empty() { 0 } else { span.start });
-        let mut error = spot.error(Reason::Type, one_line(&(prefix + cause.message())));
+        let mut error = spot.error(MistakeKind::Type, one_line(&(prefix + cause.message())));
         let words: Vec<&str> = cause.message().split('`').collect();
         let is_known = match words[..] {
             ["missing field ", name, ..] => gone.contains(&below(&path, name)),

@@ -7,7 +7,7 @@ use stripmine_kernels::isa::op::{OpClass, OpCounts};
 /// Provenance of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Provenance {
+pub enum NumberProvenance {
     /// Printed in the source that the note names.
     Sourced,
     /// Derived from sourced facts, by the argument in the note.
@@ -19,25 +19,25 @@ pub enum Provenance {
 /// A number or a fact with its provenance; the unit is that of its entry.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table of value, provenance and note")]
-pub(crate) struct Known<T> {
+pub(crate) struct SourcedValue<T> {
     /// The number, positive and finite, or the fact.
     pub value: T,
     /// Origin of the value: a source, a derivation or our choice.
-    pub provenance: Provenance,
+    pub provenance: NumberProvenance,
     /// Source, derivation or reason; never empty.
     pub(crate) note: String,
 }
 
 /// A number with its provenance.
-pub(crate) type Quantity = Known<f64>;
+pub(crate) type SourcedNumber = SourcedValue<f64>;
 
 /// Vector registers of one processor.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct VectorRegisters {
-    pub(super) count: Quantity,
+    pub(super) count: SourcedNumber,
     /// Elements in each.
-    pub(super) length: Quantity,
+    pub(super) length: SourcedNumber,
 }
 
 /// Functional units of one kind.
@@ -47,22 +47,22 @@ pub(super) struct Unit {
     /// Names of the classes that they serve.
     serves: Vec<String>,
     /// Instructions of these classes that execute at once.
-    count: Quantity,
+    count: SourcedNumber,
     /// Elements per clock period of each; 1 by default.
-    rate: Option<Quantity>,
+    rate: Option<SourcedNumber>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MemoryPorts {
     /// Loads that execute at once; loads and stores together where there are no ports for stores.
-    load_ports: Quantity,
+    load_ports: SourcedNumber,
     /// Stores that execute at once; none where they share the ports of the loads.
-    store_ports: Option<Quantity>,
+    store_ports: Option<SourcedNumber>,
     /// Elements per clock period of each port; 1 by default.
-    rate: Option<Quantity>,
+    rate: Option<SourcedNumber>,
     /// Elements per clock period through an index vector; as `rate` by default.
-    gather_rate: Option<Quantity>,
+    gather_rate: Option<SourcedNumber>,
 }
 
 /// Executions per class of operations; classes that do not occur are absent.
@@ -76,14 +76,14 @@ pub(crate) type ClassCounts = BTreeMap<OpClass, u64>;
 #[serde(deny_unknown_fields)]
 pub(super) struct Expansion {
     pub(super) steps: BTreeMap<String, u64>,
-    provenance: Provenance,
+    provenance: NumberProvenance,
     #[serde(rename = "note")]
     _note: String,
 }
 
 /// A resource that instructions compete for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Resource<'m> {
+pub(crate) enum MachineResource<'m> {
     /// Functional units of a kind, by name.
     Unit(&'m str),
     /// The ports of loads.
@@ -95,7 +95,7 @@ pub(crate) enum Resource<'m> {
 /// A resource that an instruction occupies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Occupied<'m> {
-    pub(crate) resource: Resource<'m>,
+    pub(crate) resource: MachineResource<'m>,
     /// Instructions that it serves at once.
     pub count: f64,
     /// Elements per clock period.
@@ -109,16 +109,16 @@ pub(crate) struct Occupied<'m> {
 pub struct MachineModel {
     format: u32,
     pub(super) title: String,
-    year: Quantity,
-    pub(super) clock_period_ns: Quantity,
+    year: SourcedNumber,
+    pub(super) clock_period_ns: SourcedNumber,
     /// True if a result feeds the next instruction element by element.
-    chaining: Option<Known<bool>>,
+    chaining: Option<SourcedValue<bool>>,
     /// Clock periods per strip.
-    pub(super) loop_overhead: Option<Quantity>,
+    pub(super) loop_overhead: Option<SourcedNumber>,
     /// Vector registers; none where vectors have any length.
     pub(super) vector_registers: Option<VectorRegisters>,
     /// Clock periods by class; `default` applies to all other classes.
-    pub(super) start_up: BTreeMap<String, Quantity>,
+    pub(super) start_up: BTreeMap<String, SourcedNumber>,
     #[serde(default)]
     units: BTreeMap<String, Unit>,
     memory: Option<MemoryPorts>,
@@ -177,15 +177,15 @@ impl MachineModel {
         let mut known = self.clone();
         let quantities = known.start_up.values_mut().chain(&mut known.loop_overhead);
         quantities
-            .filter(|quantity| quantity.provenance == Provenance::Assumed)
+            .filter(|quantity| quantity.provenance == NumberProvenance::Assumed)
             .for_each(|quantity| quantity.value = 0.0);
         known
     }
 
     /// Names of the assumed entries, such as `start_up.add`.
     pub(crate) fn assumed(&self) -> Vec<String> {
-        let mut all: Vec<(String, Option<Provenance>)> = vec![];
-        let mut add = |name: String, it: Option<&Quantity>| all.push((name, it.map(|it| it.provenance)));
+        let mut all: Vec<(String, Option<NumberProvenance>)> = vec![];
+        let mut add = |name: String, it: Option<&SourcedNumber>| all.push((name, it.map(|it| it.provenance)));
         let (registers, memory) = (self.vector_registers.as_ref(), self.memory.as_ref());
         add("year".to_owned(), Some(&self.year));
         add("clock_period_ns".to_owned(), Some(&self.clock_period_ns));
@@ -207,7 +207,7 @@ impl MachineModel {
         for name in OpClass::ALL.iter().map(|class| class.name()) {
             all.push((format!("expansions.{name}"), self.expansions.get(name).map(|it| it.provenance)));
         }
-        all.retain(|(_, provenance)| *provenance == Some(Provenance::Assumed));
+        all.retain(|(_, provenance)| *provenance == Some(NumberProvenance::Assumed));
         all.into_iter().map(|(name, _)| name).collect()
     }
 
@@ -224,12 +224,12 @@ impl MachineModel {
     /// Resource that an instruction of `class` occupies; none where the machine does not state it.
     pub(crate) fn unit(&self, class: OpClass) -> Option<Occupied<'_>> {
         let number =
-            |quantity: &Option<Quantity>, otherwise| quantity.as_ref().map_or(otherwise, |q| q.value);
+            |quantity: &Option<SourcedNumber>, otherwise| quantity.as_ref().map_or(otherwise, |q| q.value);
         if !class.moves_data() {
             let serves = |unit: &Unit| unit.serves.iter().any(|name| name == class.name());
             let (name, unit) = self.units.iter().find(|(_, unit)| serves(unit))?;
             let rate = number(&unit.rate, 1.0);
-            return Some(Occupied { resource: Resource::Unit(name), count: unit.count.value, rate });
+            return Some(Occupied { resource: MachineResource::Unit(name), count: unit.count.value, rate });
         }
         let memory = self.memory.as_ref()?;
         let rate = number(&memory.rate, 1.0);
@@ -239,9 +239,9 @@ impl MachineModel {
         };
         Some(match (class, &memory.store_ports) {
             (OpClass::Store | OpClass::Scatter, Some(ports)) => {
-                Occupied { resource: Resource::Stores, count: ports.value, rate }
+                Occupied { resource: MachineResource::Stores, count: ports.value, rate }
             }
-            _ => Occupied { resource: Resource::Loads, count: memory.load_ports.value, rate },
+            _ => Occupied { resource: MachineResource::Loads, count: memory.load_ports.value, rate },
         })
     }
 }

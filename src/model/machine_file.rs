@@ -1,13 +1,14 @@
 //! Machine files: TOML in which every number is a table of its value, its provenance and a note. The fields of [`MachineModel`]
 //! define the entries; `machines/cray-1.toml` is an example of almost all.
 
-use super::file::{Entry, Kind};
+use super::file::{FileEntry, FileKind};
 use super::machine::{ClassCounts, DEFAULT, MachineModel, add_scaled};
 use stripmine_kernels::isa::op::OpClass;
 use stripmine_physics::input::InputErrors;
 use toml::de::DeValue;
 
-const KIND: Kind<MachineModel> = Kind { format: 1, remedy: None, wrong, completed: MachineModel::completed };
+const KIND: FileKind<MachineModel> =
+    FileKind { format: 1, remedy: None, wrong, completed: MachineModel::completed };
 /// Largest number of operations in an expansion; clocks process them one by one.
 const LONGEST_EXPANSION: u64 = 10_000;
 
@@ -94,7 +95,7 @@ fn class_of(name: &str) -> Option<OpClass> {
 }
 
 /// Describes an error of a single entry, if any.
-fn wrong(entry: &Entry<'_>) -> Option<String> {
+fn wrong(entry: &FileEntry<'_>) -> Option<String> {
     let path = entry.path();
     match (&entry.names[..], entry.value) {
         ([.., "note"], DeValue::String(note)) if note.trim().is_empty() => {

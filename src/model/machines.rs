@@ -3,7 +3,7 @@
 use super::machine::MachineModel;
 use stripmine_physics::input::InputErrors;
 use stripmine_physics::quoted::quoted;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::words::suggestion;
 
 macro_rules! embedded {
@@ -37,9 +37,9 @@ pub enum MachineError {
 }
 
 impl Reported for MachineError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
-            MachineError::Unknown { .. } => Class::Usage,
+            MachineError::Unknown { .. } => ErrorClass::Usage,
             MachineError::File(error) => error.class(),
         }
     }

@@ -1,8 +1,10 @@
 //! Figures of a page: charts and maps by expressions over the columns of frames, and pictures drawn by a study.
 
-use super::{Filling, Shown, Text};
-use crate::frame::{Frame, Scope};
-use crate::report::figure::{Axis, Band, Chart, Figure, Map, Picture, Point, Series, Style};
+use super::{Shown, TemplateFilling, TemplateText};
+use crate::frame::{ExpressionScope, ResultFrame};
+use crate::report::figure::{
+    Chart, ChartAxis, ChartBand, Figure, HeatMap, Picture, Series, SeriesPoint, Style,
+};
 use minijinja::value::{Value, ValueKind};
 use serde::Deserialize;
 use std::sync::Arc;
@@ -13,17 +15,17 @@ use toml::Spanned;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FigureSpec {
-    name: Text,
+    name: TemplateText,
     /// List of elements, each of which gets such a figure; expressions call the element `it`.
-    each: Option<Text>,
+    each: Option<TemplateText>,
     /// Condition of the figure; none for an unconditional one.
-    when: Option<Text>,
+    when: Option<TemplateText>,
     /// List of elements, each of which gets a panel of the chart; expressions call the element `it`.
-    panels: Option<Text>,
+    panels: Option<TemplateText>,
     /// Name of a panel.
-    panel: Option<Text>,
-    title: Text,
-    caption: Option<Text>,
+    panel: Option<TemplateText>,
+    title: TemplateText,
+    caption: Option<TemplateText>,
     /// Axes of a chart or a map; none for a picture drawn by the study.
     x: Option<AxisSpec>,
     y: Option<AxisSpec>,
@@ -49,24 +51,24 @@ impl FigureSpec {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AxisSpec {
-    label: Text,
-    unit: Option<Text>,
+    label: TemplateText,
+    unit: Option<TemplateText>,
     #[serde(default)]
-    log: Truth,
+    log: TruthSpec,
     limits: Option<[f64; 2]>,
 }
 
 /// A truth value, or an expression that gives one.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-enum Truth {
+enum TruthSpec {
     Fixed(bool),
     Expression(String),
 }
 
-impl Default for Truth {
-    fn default() -> Truth {
-        Truth::Fixed(false)
+impl Default for TruthSpec {
+    fn default() -> TruthSpec {
+        TruthSpec::Fixed(false)
     }
 }
 
@@ -75,19 +77,19 @@ impl Default for Truth {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SeriesSpec {
-    from: Text,
-    x: Text,
-    y: Text,
+    from: TemplateText,
+    x: TemplateText,
+    y: TemplateText,
     /// Half-width of the interval of y.
-    error: Option<Text>,
+    error: Option<TemplateText>,
     /// Ends of the interval of y, or of x where y is a name.
-    spread: Option<[Text; 2]>,
+    spread: Option<[TemplateText; 2]>,
     /// Name in the legend of a single series.
-    name: Option<Text>,
+    name: Option<TemplateText>,
     /// Name in the legend by row: one series for each name.
-    by: Option<Text>,
+    by: Option<TemplateText>,
     /// Condition of the rows that are drawn.
-    only: Option<Text>,
+    only: Option<TemplateText>,
     style: Style,
     /// Colour of the first series; by default the next free one.
     hue: Option<usize>,
@@ -101,17 +103,17 @@ struct SeriesSpec {
 #[serde(deny_unknown_fields)]
 struct BandSpec {
     /// List of elements, each of which gets such a part; expressions call the element `it`.
-    each: Option<Text>,
-    label: Text,
+    each: Option<TemplateText>,
+    label: TemplateText,
     /// Ends on the horizontal axis, numbers or expressions; equal ones give a line.
-    x: Option<Spanned<[End; 2]>>,
+    x: Option<Spanned<[BandEnd; 2]>>,
     /// Ends on the vertical axis.
-    y: Option<Spanned<[End; 2]>>,
+    y: Option<Spanned<[BandEnd; 2]>>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-enum End {
+enum BandEnd {
     Number(f64),
     Expression(String),
 }
@@ -120,10 +122,10 @@ enum End {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MapSpec {
-    from: Text,
-    x: Text,
-    y: Text,
-    value: Text,
+    from: TemplateText,
+    x: TemplateText,
+    y: TemplateText,
+    value: TemplateText,
     /// Quantity shown by the colour.
     shade: AxisSpec,
 }
@@ -131,7 +133,7 @@ struct MapSpec {
 /// Builds the figures of one specification: one, or one for each element of a list.
 pub(super) fn figures(
     spec: &FigureSpec,
-    fill: &Filling<'_>,
+    fill: &TemplateFilling<'_>,
     shown: &Shown<'_>,
 ) -> Result<Vec<Figure>, InputErrors> {
     if let Some(when) = &spec.when {
@@ -141,12 +143,12 @@ pub(super) fn figures(
         }
     }
     let Some(each) = &spec.each else { return Ok(vec![figure(spec, fill, shown)?]) };
-    let one = |scope: Scope| figure(spec, &Filling { scope: &scope, ..*fill }, shown);
+    let one = |scope: ExpressionScope| figure(spec, &TemplateFilling { scope: &scope, ..*fill }, shown);
     elements(each, fill)?.into_iter().map(one).collect()
 }
 
 /// Names that expressions may use for each element of a list.
-fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, InputErrors> {
+fn elements(list: &TemplateText, fill: &TemplateFilling<'_>) -> Result<Vec<ExpressionScope>, InputErrors> {
     let refused = |cause: String| fill.refused(list.span().start, cause);
     let all = fill.expressions.value(list.get_ref(), fill.scope).map_err(refused)?;
     let all = all.try_iter().map_err(|cause| refused(cause.to_string()))?;
@@ -154,15 +156,15 @@ fn elements(list: &Text, fill: &Filling<'_>) -> Result<Vec<Scope>, InputErrors> 
 }
 
 /// Builds a figure of a page.
-fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Figure, InputErrors> {
+fn figure(spec: &FigureSpec, fill: &TemplateFilling<'_>, shown: &Shown<'_>) -> Result<Figure, InputErrors> {
     let title = fill.text(&spec.title)?;
     let caption = spec.caption.as_ref().map_or(Ok(String::new()), |caption| fill.text(caption))?;
     let name = fill.text(&spec.name)?;
     let picture = match (&spec.x, &spec.y) {
         (Some(x), Some(y)) => {
             let axes = [axis(x, fill)?, axis(y, fill)?];
-            let panel = |scope: Scope| {
-                let fill = Filling { scope: &scope, ..*fill };
+            let panel = |scope: ExpressionScope| {
+                let fill = TemplateFilling { scope: &scope, ..*fill };
                 let name = spec.panel.as_ref().map_or(Ok(String::new()), |name| fill.text(name))?;
                 Ok((name, chart(spec, axes.clone(), &fill)?))
             };
@@ -187,22 +189,27 @@ fn figure(spec: &FigureSpec, fill: &Filling<'_>, shown: &Shown<'_>) -> Result<Fi
     Ok(picture.figure(name, title).caption(caption))
 }
 
-fn axis(spec: &AxisSpec, fill: &Filling<'_>) -> Result<Axis, InputErrors> {
+fn axis(spec: &AxisSpec, fill: &TemplateFilling<'_>) -> Result<ChartAxis, InputErrors> {
     let label = fill.text(&spec.label)?;
     let unit = spec.unit.as_ref().map(|unit| fill.text(unit)).transpose()?.filter(|unit| !unit.is_empty());
     let is_logarithmic = match &spec.log {
-        Truth::Fixed(truth) => *truth,
-        Truth::Expression(text) => {
+        TruthSpec::Fixed(truth) => *truth,
+        TruthSpec::Expression(text) => {
             let value = fill.expressions.value(text, fill.scope);
             value.map_err(|cause| fill.refused(spec.label.span().start, cause))?.is_true()
         }
     };
     let unit = unit.as_deref();
-    let axis = if is_logarithmic { Axis::logarithmic(&label, unit) } else { Axis::linear(&label, unit) };
-    Ok(Axis { limits: spec.limits, ..axis })
+    let axis =
+        if is_logarithmic { ChartAxis::logarithmic(&label, unit) } else { ChartAxis::linear(&label, unit) };
+    Ok(ChartAxis { limits: spec.limits, ..axis })
 }
 
-fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Chart, InputErrors> {
+fn chart(
+    spec: &FigureSpec,
+    [x, y]: [ChartAxis; 2],
+    fill: &TemplateFilling<'_>,
+) -> Result<Chart, InputErrors> {
     let mut chart = Chart::of(x, y);
     let mut names = [vec![], vec![]];
     for spec in &spec.series {
@@ -211,30 +218,30 @@ fn chart(spec: &FigureSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Cha
     }
     let [across, mut down] = names;
     if !across.is_empty() {
-        chart.x = Axis::names(&chart.x.label, across);
+        chart.x = ChartAxis::names(&chart.x.label, across);
     }
     if !down.is_empty() {
         let points = chart.series.iter_mut().flat_map(|series| &mut series.points);
         points.for_each(|point| point.y = (down.len() - 1) as f64 - point.y);
         down.reverse();
-        chart.y = Axis::names(&chart.y.label, down);
+        chart.y = ChartAxis::names(&chart.y.label, down);
     }
     for spec in &spec.band {
         let scopes =
             spec.each.as_ref().map_or_else(|| Ok(vec![fill.scope.clone()]), |all| elements(all, fill))?;
         for scope in &scopes {
-            chart = band(chart, spec, &Filling { scope, ..*fill })?;
+            chart = band(chart, spec, &TemplateFilling { scope, ..*fill })?;
         }
     }
     Ok(chart)
 }
 
-fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, InputErrors> {
+fn band(mut chart: Chart, spec: &BandSpec, fill: &TemplateFilling<'_>) -> Result<Chart, InputErrors> {
     let label = fill.text(&spec.label)?;
-    let ends = |ends: &Spanned<[End; 2]>| {
-        let end = |end: &End| match end {
-            End::Number(number) => Ok(*number),
-            End::Expression(text) => {
+    let ends = |ends: &Spanned<[BandEnd; 2]>| {
+        let end = |end: &BandEnd| match end {
+            BandEnd::Number(number) => Ok(*number),
+            BandEnd::Expression(text) => {
                 let value = fill.expressions.value(text, fill.scope);
                 let number = value.and_then(|value| number(&value).map(|it| it.unwrap_or(f64::NAN)));
                 number.map_err(|cause| fill.refused(ends.span().start, cause))
@@ -244,10 +251,10 @@ fn band(mut chart: Chart, spec: &BandSpec, fill: &Filling<'_>) -> Result<Chart, 
         Ok::<_, InputErrors>([end(low)?, end(high)?])
     };
     if let Some(x) = &spec.x {
-        chart = chart.band(Band::of_x(&label, ends(x)?));
+        chart = chart.band(ChartBand::of_x(&label, ends(x)?));
     }
     if let Some(y) = &spec.y {
-        chart = chart.band(Band::of_y(&label, ends(y)?));
+        chart = chart.band(ChartBand::of_y(&label, ends(y)?));
     }
     Ok(chart)
 }
@@ -257,10 +264,10 @@ fn series(
     spec: &SeriesSpec,
     next: usize,
     [across, down]: &mut [Vec<String>; 2],
-    fill: &Filling<'_>,
+    fill: &TemplateFilling<'_>,
 ) -> Result<Vec<Series>, InputErrors> {
     let frame = fill.frame(&spec.from)?;
-    let rows = Rows { frame, fill };
+    let rows = FigureRows { frame, fill };
     let fixed = spec.name.as_ref().map_or(Ok(String::new()), |name| fill.text(name))?;
     let mut all: Vec<Series> = vec![];
     for row in 0..frame.rows.len() {
@@ -271,7 +278,7 @@ fn series(
         }
         let place = (rows.place(&spec.x, row, across)?, rows.place(&spec.y, row, down)?);
         let (Some(x), Some(y)) = place else { continue };
-        let mut point = Point::at(x, y);
+        let mut point = SeriesPoint::at(x, y);
         if let Some(error) = &spec.error
             && let Some(error) = rows.number(error, row)?
         {
@@ -295,9 +302,13 @@ fn series(
 }
 
 /// Cells in the order of their coordinates: numbers rise, words keep their order. A point without a row is empty.
-fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, InputErrors> {
+fn mapped(
+    spec: &MapSpec,
+    [x, y]: [ChartAxis; 2],
+    fill: &TemplateFilling<'_>,
+) -> Result<HeatMap, InputErrors> {
     let frame = fill.frame(&spec.from)?;
-    let rows = Rows { frame, fill };
+    let rows = FigureRows { frame, fill };
     let mut cells = vec![];
     for row in 0..frame.rows.len() {
         let place = [rows.value(&spec.x, row)?, rows.value(&spec.y, row)?];
@@ -305,7 +316,7 @@ fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, 
             cells.push((place, rows.number(&spec.value, row)?.unwrap_or(f64::NAN)));
         }
     }
-    let along = |axis: usize, drawn: Axis, text: &Text| -> Result<_, InputErrors> {
+    let along = |axis: usize, drawn: ChartAxis, text: &TemplateText| -> Result<_, InputErrors> {
         let mut all: Vec<Value> = vec![];
         for (place, _) in &cells {
             if !all.contains(&place[axis]) {
@@ -313,7 +324,7 @@ fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, 
             }
         }
         if all.iter().any(|it| it.kind() == ValueKind::String) {
-            return Ok((Axis::names(&drawn.label, all.iter().map(Value::to_string)), all));
+            return Ok((ChartAxis::names(&drawn.label, all.iter().map(Value::to_string)), all));
         }
         let numbers = all.iter().map(number).collect::<Result<Vec<_>, String>>();
         numbers.map_err(|cause| fill.refused(text.span().start, cause))?;
@@ -326,23 +337,28 @@ fn mapped(spec: &MapSpec, [x, y]: [Axis; 2], fill: &Filling<'_>) -> Result<Map, 
         cells.iter().find(|(place, _)| place[0] == *x && place[1] == *y).map_or(f64::NAN, |it| it.1)
     };
     let rows = up.iter().map(|y| across.iter().map(|x| at(x, y)).collect()).collect();
-    Ok(Map { x, y, value: axis(&spec.shade, fill)?, rows })
+    Ok(HeatMap { x, y, value: axis(&spec.shade, fill)?, rows })
 }
 
 /// Rows of a frame, whose cells are named in expressions.
-struct Rows<'r> {
-    frame: &'r Arc<Frame>,
-    fill: &'r Filling<'r>,
+struct FigureRows<'r> {
+    frame: &'r Arc<ResultFrame>,
+    fill: &'r TemplateFilling<'r>,
 }
 
-impl Rows<'_> {
-    fn value(&self, text: &Text, row: usize) -> Result<Value, InputErrors> {
+impl FigureRows<'_> {
+    fn value(&self, text: &TemplateText, row: usize) -> Result<Value, InputErrors> {
         let value = self.fill.expressions.of_row(text.get_ref(), self.fill.scope, self.frame, row);
         value.map_err(|cause| self.fill.refused(text.span().start, cause))
     }
 
     /// Coordinate on an axis: a number, or the index of a name.
-    fn place(&self, text: &Text, row: usize, names: &mut Vec<String>) -> Result<Option<f64>, InputErrors> {
+    fn place(
+        &self,
+        text: &TemplateText,
+        row: usize,
+        names: &mut Vec<String>,
+    ) -> Result<Option<f64>, InputErrors> {
         let value = self.value(text, row)?;
         let Some(name) = value.as_str() else { return self.number(text, row) };
         let at = names.iter().position(|known| known == name).unwrap_or_else(|| {
@@ -352,7 +368,7 @@ impl Rows<'_> {
         Ok(Some(at as f64))
     }
 
-    fn number(&self, text: &Text, row: usize) -> Result<Option<f64>, InputErrors> {
+    fn number(&self, text: &TemplateText, row: usize) -> Result<Option<f64>, InputErrors> {
         let value = self.value(text, row)?;
         number(&value).map_err(|cause| self.fill.refused(text.span().start, cause))
     }

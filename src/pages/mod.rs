@@ -7,32 +7,32 @@
 mod figures;
 
 use crate::claims::{self, Claim};
-use crate::frame::{Expressions, Frame, Scope, Table};
+use crate::frame::{ExpressionScope, Expressions, FormattedTable, ResultFrame};
 use crate::report::figure::{Figure, Picture, data as figure_data};
 use crate::report::section::Film;
 use crate::report::{Chapter, Section};
 use figures::FigureSpec;
 use rust_embed::RustEmbed;
 use serde::Deserialize;
-use stripmine_physics::input::{InputErrors, InputText, Reason};
+use stripmine_physics::input::{InputErrors, InputText, MistakeKind};
 use toml::Spanned;
 
 /// Templates: read from the source tree by a development build, embedded in a release.
 #[derive(RustEmbed)]
 #[folder = "pages"]
-struct Files;
+struct PageFiles;
 
 /// Line that begins and ends the first part of a template.
 const FENCE: &str = "+++\n";
 
 /// A text that may contain expressions, with its location in the file.
-type Text = Spanned<String>;
+type TemplateText = Spanned<String>;
 
 /// A template.
 #[derive(Debug)]
 pub(crate) struct Page {
     name: String,
-    header: Header,
+    header: PageHeader,
     /// Text of the whole file.
     text: String,
     /// Byte offset of the paragraphs.
@@ -42,12 +42,12 @@ pub(crate) struct Page {
 /// First part of a template.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Header {
+struct PageHeader {
     title: String,
     chapter: Chapter,
-    cost: Cost,
-    question: Text,
-    expected: Option<Text>,
+    cost: ItemCost,
+    question: TemplateText,
+    expected: Option<TemplateText>,
     /// Set for results that depend on the host.
     #[serde(default)]
     host: bool,
@@ -67,7 +67,7 @@ struct Header {
 /// Time and memory of an item on the two cores of the report's host.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Cost {
+pub(crate) struct ItemCost {
     /// Seconds of the quick size; none where the item is only made in full.
     pub quick: Option<f64>,
     /// Seconds in full.
@@ -92,20 +92,20 @@ fn usual_memory() -> u64 {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TableSpec {
-    from: Text,
-    title: Option<Text>,
+    from: TemplateText,
+    title: Option<TemplateText>,
     /// Columns shown; all of them by default.
     columns: Option<Spanned<Vec<String>>>,
     #[serde(default)]
-    notes: Vec<Text>,
+    notes: Vec<TemplateText>,
 }
 
 /// Lines quoted from a file of the item.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Excerpt {
-    file: Text,
-    caption: Text,
+    file: TemplateText,
+    caption: TemplateText,
     /// First line, counted from 1.
     #[serde(default = "first")]
     from: usize,
@@ -116,7 +116,7 @@ struct Excerpt {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FilmSpec {
-    title: Text,
+    title: TemplateText,
 }
 
 fn first() -> usize {
@@ -125,7 +125,7 @@ fn first() -> usize {
 
 /// Data of an item that its page shows.
 pub(crate) struct Shown<'d> {
-    pub frames: &'d [Frame],
+    pub frames: &'d [ResultFrame],
     /// Pictures that are not charts of frames, by name.
     pub pictures: &'d [(String, Picture)],
     pub(crate) film: Option<&'d Film>,
@@ -141,20 +141,20 @@ impl Page {
     /// # Errors
     /// [`InputErrors`] with the line of the mistake.
     pub(crate) fn of(name: &str) -> Result<Option<Page>, InputErrors> {
-        let Some(file) = Files::get(&format!("{name}.md")) else { return Ok(None) };
+        let Some(file) = PageFiles::get(&format!("{name}.md")) else { return Ok(None) };
         Page::read(name, String::from_utf8_lossy(&file.data).into_owned()).map(Some)
     }
 
     fn read(name: &str, text: String) -> Result<Page, InputErrors> {
         let file = file(name);
         let wrong =
-            |at: usize, cause: &str| InputText::new(&file, &text).spot(at).error(Reason::Syntax, cause);
+            |at: usize, cause: &str| InputText::new(&file, &text).spot(at).error(MistakeKind::Syntax, cause);
         let header = text.strip_prefix(FENCE).ok_or_else(|| wrong(0, "the first line is not `+++`"))?;
         let end = header.find(&format!("\n{FENCE}")).ok_or_else(|| wrong(0, "no second line of `+++`"))? + 1;
         // The blank first line preserves line numbers of the file.
         let padded = format!("   \n{}", &header[..end]);
         let parsed = toml::from_str(&padded);
-        let header: Header =
+        let header: PageHeader =
             parsed.map_err(|cause| wrong(cause.span().map_or(0, |span| span.start), cause.message()))?;
         let body = FENCE.len() + end + FENCE.len();
         Ok(Page { name: name.to_owned(), header, text, body })
@@ -181,7 +181,7 @@ impl Page {
     }
 
     /// Stated cost.
-    pub(crate) fn cost(&self) -> Cost {
+    pub(crate) fn cost(&self) -> ItemCost {
         self.header.cost
     }
 
@@ -195,11 +195,12 @@ impl Page {
         claims: &[Claim],
         date: &str,
     ) -> Result<Section, InputErrors> {
-        let scope = Scope::of(shown.frames.iter().cloned());
+        let scope = ExpressionScope::of(shown.frames.iter().cloned());
         let expressions = Expressions::new();
-        let fill = Filling { page: self, scope: &scope, expressions: &expressions };
-        let Header { title, chapter, question, expected, host, front, figure, table, excerpt, film, .. } =
-            &self.header;
+        let fill = TemplateFilling { page: self, scope: &scope, expressions: &expressions };
+        let PageHeader {
+            title, chapter, question, expected, host, front, figure, table, excerpt, film, ..
+        } = &self.header;
         let body = fill.at(&self.text[self.body..], self.body)?;
         let mut paragraphs = body.split("\n\n").map(one_line).filter(|paragraph| !paragraph.is_empty());
         let mut section = Section {
@@ -227,8 +228,8 @@ impl Page {
             section.film = Some(Film { title: fill.text(&spec.title)?, ..film.clone() });
         }
         // Claims may refer to the points of a chart, too.
-        let of_charts = section.figures.iter().filter_map(figure_data).map(|table| Frame::from(&table));
-        let scope = Scope::of(shown.frames.iter().cloned().chain(of_charts));
+        let of_charts = section.figures.iter().filter_map(figure_data).map(|table| ResultFrame::from(&table));
+        let scope = ExpressionScope::of(shown.frames.iter().cloned().chain(of_charts));
         let judged = claims::judge_where_possible(claims, &self.name, &scope, date);
         section.claims = judged.iter().map(Into::into).collect();
         Ok(section)
@@ -237,17 +238,17 @@ impl Page {
 
 /// A template being filled from frames.
 #[derive(Clone, Copy)]
-struct Filling<'p> {
+struct TemplateFilling<'p> {
     page: &'p Page,
-    scope: &'p Scope,
+    scope: &'p ExpressionScope,
     expressions: &'p Expressions,
 }
 
-impl Filling<'_> {
+impl TemplateFilling<'_> {
     /// Error that rejects the text at a byte offset of the file.
     fn refused(&self, at: usize, cause: impl Into<String>) -> InputErrors {
         let file = file(&self.page.name);
-        InputText::new(&file, &self.page.text).spot(at).error(Reason::Contradiction, cause).into()
+        InputText::new(&file, &self.page.text).spot(at).error(MistakeKind::Contradiction, cause).into()
     }
 
     /// Fills in the expressions of a text of the file.
@@ -258,17 +259,17 @@ impl Filling<'_> {
         })
     }
 
-    fn text(&self, text: &Text) -> Result<String, InputErrors> {
+    fn text(&self, text: &TemplateText) -> Result<String, InputErrors> {
         self.at(text.get_ref(), text.span().start).map(|text| one_line(&text))
     }
 
-    fn frame(&self, name: &Text) -> Result<&std::sync::Arc<Frame>, InputErrors> {
+    fn frame(&self, name: &TemplateText) -> Result<&std::sync::Arc<ResultFrame>, InputErrors> {
         self.scope.frame(name.get_ref()).map_err(|cause| self.refused(name.span().start, cause))
     }
 
-    fn table(&self, spec: &TableSpec) -> Result<Table, InputErrors> {
+    fn table(&self, spec: &TableSpec) -> Result<FormattedTable, InputErrors> {
         let frame = self.frame(&spec.from)?;
-        let mut table = Table::from(&**frame);
+        let mut table = FormattedTable::from(&**frame);
         if let Some(columns) = &spec.columns {
             let wrong = |cause| self.refused(columns.span().start, cause);
             let places = columns.get_ref().iter().map(|column| {

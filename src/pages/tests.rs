@@ -1,8 +1,8 @@
 //! Templates are filled from frames, and errors name missing parts.
 
 use super::*;
-use crate::frame::Rows;
-use crate::report::figure::{Axis, Chart, Figure};
+use crate::frame::FrameBuilder;
+use crate::report::figure::{Chart, ChartAxis, Figure};
 
 const TEMPLATE: &str = r#"+++
 title = "Errors"
@@ -31,8 +31,8 @@ More
 words.
 "#;
 
-fn frames() -> [Frame; 1] {
-    let frame = Rows::of([("a", 2u64, 0.5), ("b", 4, 0.25), ("a", 1, 1.0)])
+fn frames() -> [ResultFrame; 1] {
+    let frame = FrameBuilder::of([("a", 2u64, 0.5), ("b", 4, 0.25), ("a", 1, 1.0)])
         .text("scheme", |it| it.0)
         .count("steps", |it| it.1)
         .number("error", 2, |it| it.2)
@@ -86,10 +86,10 @@ fn words_are_names_on_an_axis() {
         chart
     };
     let across = chart("scheme", "error");
-    assert_eq!(across.x, Axis::names("steps", ["a", "b"]));
+    assert_eq!(across.x, ChartAxis::names("steps", ["a", "b"]));
     assert_eq!(across.series[0].points.iter().map(|it| it.x).collect::<Vec<_>>(), [0.0, 0.0, 1.0]);
     let down = chart("steps", "scheme");
-    assert_eq!(down.y, Axis::names("error", ["b", "a"]));
+    assert_eq!(down.y, ChartAxis::names("error", ["b", "a"]));
     let points: Vec<_> = down.series[0].points.iter().map(|it| (it.x, it.y, it.spread)).collect();
     let expected = [(1.0, 1.0), (2.0, 1.0), (4.0, 0.0)].map(|(x, y)| (x, y, Some([x, 2.0 * x])));
     assert_eq!(points, expected);
@@ -117,7 +117,7 @@ fn a_map_has_a_cell_for_each_row() {
     let to = TEMPLATE.find("\n[[table]]").unwrap();
     let section = filled(&TEMPLATE.replace(&TEMPLATE[from..to], &format!("{map}\n"))).unwrap();
     let Picture::Map(map) = &section.figures[0].picture else { panic!("no map") };
-    assert_eq!(map.y, Axis::names("error", ["a", "b"]));
+    assert_eq!(map.y, ChartAxis::names("error", ["a", "b"]));
     assert_eq!(map.rows[0][..2], [1.0, 0.5]);
     assert!(map.rows[0][2].is_nan() && map.rows[1][2] == 0.25);
 }
@@ -161,7 +161,7 @@ fn template_errors_name_line_and_alternatives() {
 /// Every template of the folder can be read.
 #[test]
 fn templates_are_understood() {
-    for file in Files::iter() {
+    for file in PageFiles::iter() {
         let name = file.strip_suffix(".md").unwrap();
         Page::of(name).unwrap().unwrap();
     }

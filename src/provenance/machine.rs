@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Properties of the machine that measured times depend on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Machine {
+pub struct MachineDescription {
     /// Name of the processor, and the platform.
     pub(crate) processor: String,
     /// Family, model and stepping of the processor, if reported.
@@ -27,9 +27,9 @@ pub struct Machine {
     pub(crate) compiler: String,
 }
 
-impl Machine {
+impl MachineDescription {
     /// Describes this machine, from `/proc/cpuinfo` and `/sys/devices/system/cpu` on Linux. Unreported properties are left out.
-    pub(crate) fn here() -> Machine {
+    pub(crate) fn here() -> MachineDescription {
         #[expect(clippy::disallowed_methods, reason = "without this file the properties are left out")]
         let cpuinfo = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let field = |name: &str| {
@@ -37,7 +37,7 @@ impl Machine {
             cpuinfo.lines().find_map(value)
         };
         let first = Path::new("/sys/devices/system/cpu/cpu0");
-        Machine {
+        MachineDescription {
             processor: stripmine_physics::origin::host(),
             model: model(&field),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
@@ -50,14 +50,14 @@ impl Machine {
     }
 }
 
-impl Machine {
+impl MachineDescription {
     /// Copy without the clock, which fluctuates on some machines.
-    pub(crate) fn without_clock(&self) -> Machine {
-        Machine { clock: None, ..self.clone() }
+    pub(crate) fn without_clock(&self) -> MachineDescription {
+        MachineDescription { clock: None, ..self.clone() }
     }
 }
 
-impl fmt::Display for Machine {
+impl fmt::Display for MachineDescription {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.processor)?;
         if let Some(model) = &self.model {
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn unreported_machine_properties_are_left_out() {
-        let machine = Machine {
+        let machine = MachineDescription {
             processor: "A, linux x86_64".into(),
             model: Some("family 25 model 17 stepping 1".into()),
             cores: 2,
@@ -124,7 +124,7 @@ mod tests {
             said,
             "A, linux x86_64, family 25 model 17 stepping 1, 2 cores, 2.60 GHz, L1d 32K, L2 1024K, clock not set by this system, virtual machine; rustc 1.90.0"
         );
-        let unknown = Machine {
+        let unknown = MachineDescription {
             model: None,
             clock: None,
             caches: vec![],
@@ -133,6 +133,6 @@ mod tests {
             ..machine
         };
         assert_eq!(unknown.to_string(), "A, linux x86_64, 2 cores, governor performance; rustc 1.90.0");
-        assert!(Machine::here().compiler.starts_with("rustc "));
+        assert!(MachineDescription::here().compiler.starts_with("rustc "));
     }
 }

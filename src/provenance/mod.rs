@@ -2,7 +2,7 @@
 
 mod machine;
 
-pub(crate) use machine::Machine;
+pub(crate) use machine::MachineDescription;
 
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
@@ -30,7 +30,7 @@ pub struct Provenance {
     /// The whole command line as given.
     pub command: String,
     /// The machine.
-    pub machine: Machine,
+    pub machine: MachineDescription,
     /// Number of available threads.
     pub threads: usize,
     /// The widest instruction set.
@@ -47,7 +47,7 @@ pub struct Provenance {
     pub code: Option<Fingerprints>,
     /// Earlier measurements that it repeats.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub repeated: Vec<Measurement>,
+    pub repeated: Vec<RepeatedMeasurement>,
 }
 
 fn one() -> usize {
@@ -74,7 +74,7 @@ impl Fingerprints {
 
 /// Earlier measurement that a report repeats.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Measurement {
+pub struct RepeatedMeasurement {
     /// Day, as year-month-day.
     pub date: String,
     /// Source commit of the program.
@@ -91,7 +91,7 @@ impl Provenance {
         Provenance {
             origin: built(),
             command,
-            machine: Machine::here(),
+            machine: MachineDescription::here(),
             threads: rayon::current_num_threads(),
             instruction_set: InstructionSet::best().name().to_owned(),
             seconds,
@@ -139,7 +139,7 @@ impl Provenance {
     pub(crate) fn sentence(&self) -> String {
         let Provenance { origin, command, threads, seconds, date, repeated, processes, .. } = self;
         if !repeated.is_empty() {
-            let one = |it: &Measurement| {
+            let one = |it: &RepeatedMeasurement| {
                 format!("on {} by `{}`, source commit {}, {}", it.date, it.command, it.commit, it.host)
             };
             return format!("Measured {}.", repeated.iter().map(one).collect::<Vec<_>>().join("; "));

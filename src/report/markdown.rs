@@ -1,12 +1,12 @@
 //! Tables in Markdown.
 
-use super::Table;
+use super::FormattedTable;
 
 /// Maximum rows of a table on the page; a longer table is only linked.
 const ROWS: usize = 8;
 
 /// Renders a table without its notes, which are on the HTML page. A long table is replaced by a link to its file.
-pub(crate) fn render(table: &Table, folder: &str) -> String {
+pub(crate) fn render(table: &FormattedTable, folder: &str) -> String {
     let file = format!("{folder}/{}.csv", table.name);
     if table.rows.len() > ROWS {
         return format!("**{}**: {} rows in [{file}]({file}).\n", table.title, table.rows.len());

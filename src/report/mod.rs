@@ -11,8 +11,8 @@ pub(crate) mod terminal;
 use crate::provenance::Provenance;
 use stripmine_physics::number::counted;
 
-pub(crate) use crate::frame::Table;
-pub use crate::frame::{Cell, Rows};
+pub(crate) use crate::frame::FormattedTable;
+pub use crate::frame::{FrameBuilder, TableCell};
 pub(crate) use section::Chapter;
 pub use section::Section;
 

@@ -5,7 +5,7 @@
 use super::section::JudgedClaim;
 use super::tally::Tally;
 use super::{Chapter, Section, markdown};
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use std::fmt::Write;
 
 /// Text near the beginning of every such page, by which our pages are recognised.
@@ -64,10 +64,10 @@ fn claims(tally: &Tally) -> String {
         return String::new();
     }
     let mut text = "**Claims by source and verdict**\n\n| source |".to_owned();
-    for verdict in Verdict::ALL {
+    for verdict in ClaimVerdict::ALL {
         let _ = write!(text, " {} |", verdict.words());
     }
-    let _ = writeln!(text, "\n|---|{}", "--:|".repeat(Verdict::ALL.len()));
+    let _ = writeln!(text, "\n|---|{}", "--:|".repeat(ClaimVerdict::ALL.len()));
     for (source, counts) in tally.rows() {
         let counts = counts.map(|count| count.to_string()).join(" | ");
         let _ = writeln!(text, "| {source} | {counts} |");

@@ -1,8 +1,8 @@
 //! Items of a report, independent of the format of the page.
 
-use super::Table;
+use super::FormattedTable;
 use super::figure::Figure;
-use crate::claims::{self, Judged};
+use crate::claims::{self, ClaimJudgement};
 use crate::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ pub struct Section {
     pub(crate) details: Vec<String>,
     /// Figures of the item.
     pub figures: Vec<Figure>,
-    pub(crate) tables: Vec<Table>,
+    pub(crate) tables: Vec<FormattedTable>,
     /// Caption and lines of a program listing.
     pub(crate) excerpt: Option<(String, String)>,
     /// Film of the item.
@@ -97,11 +97,11 @@ impl Section {
     }
 
     /// Number of claims for each verdict that occurs.
-    pub fn counts(&self) -> impl Iterator<Item = (claims::Verdict, usize)> {
-        let count = |verdict: claims::Verdict| {
+    pub fn counts(&self) -> impl Iterator<Item = (claims::ClaimVerdict, usize)> {
+        let count = |verdict: claims::ClaimVerdict| {
             self.claims.iter().filter(|claim| claim.verdict == verdict.words()).count()
         };
-        let counts = claims::Verdict::ALL.into_iter().map(move |verdict| (verdict, count(verdict)));
+        let counts = claims::ClaimVerdict::ALL.into_iter().map(move |verdict| (verdict, count(verdict)));
         counts.filter(|(_, count)| *count > 0)
     }
 
@@ -160,9 +160,9 @@ pub struct JudgedClaim {
     pub(crate) notes: Vec<String>,
 }
 
-impl From<&Judged<'_>> for JudgedClaim {
-    fn from(judged: &Judged<'_>) -> JudgedClaim {
-        let Judged { claim, verdict, value, is_too_new } = judged;
+impl From<&ClaimJudgement<'_>> for JudgedClaim {
+    fn from(judged: &ClaimJudgement<'_>) -> JudgedClaim {
+        let ClaimJudgement { claim, verdict, value, is_too_new } = judged;
         let late =
             is_too_new.then(|| format!("The limit of {} is newer than the result.", claim.limit.since));
         JudgedClaim {
@@ -187,7 +187,7 @@ pub(crate) struct Film {
     /// Lower left and upper right corner of the visible part (length).
     pub window: [[f64; 2]; 2],
     /// Visible sides of the box.
-    pub sides: Vec<Side>,
+    pub sides: Vec<FilmSide>,
     /// True if gravity points along a long window, in reading direction.
     pub(crate) falls: bool,
     /// Radii of the moving discs (length), in the order of the discs of every frame.
@@ -195,7 +195,7 @@ pub(crate) struct Film {
     /// Centre and radius of the fixed discs (length).
     pub(crate) fixed: Vec<([f64; 2], f64)>,
     /// Frames by increasing time.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<FilmFrame>,
     /// Quantity shown by the shade of a disc, with its unit.
     pub(crate) shade: String,
     /// Lowest and highest shade.
@@ -204,7 +204,7 @@ pub(crate) struct Film {
 
 /// Side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Side {
+pub(crate) struct FilmSide {
     /// End points (length).
     pub ends: [[f64; 2]; 2],
     /// True if discs that leave here re-enter at the opposite side.
@@ -213,7 +213,7 @@ pub(crate) struct Side {
 
 /// Frame of a [`Film`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Frame {
+pub(crate) struct FilmFrame {
     /// Time of the frame.
     pub time: f64,
     /// Centre and shade of every moving disc. A NaN shade has no meaning; a NaN centre means that the disc is absent.

@@ -1,6 +1,6 @@
 //! Tables for a terminal. Numbers and words are never broken; if a table does not fit, its rows become records.
 
-use super::{Cell, Table};
+use super::{FormattedTable, TableCell};
 use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Width};
 
@@ -12,7 +12,7 @@ const BESIDE: usize = 2;
 const NARROWEST: usize = 20;
 
 /// Renders a table, no wider than the environment variable `COLUMNS` or the terminal.
-pub(crate) fn render(table: &Table) -> String {
+pub(crate) fn render(table: &FormattedTable) -> String {
     render_within(table, width())
 }
 
@@ -43,9 +43,9 @@ fn fitted_within(message: &str, width: Option<usize>) -> String {
 }
 
 /// Renders a table within a number of columns, or without a limit.
-pub(crate) fn render_within(table: &Table, width: Option<usize>) -> String {
+pub(crate) fn render_within(table: &FormattedTable, width: Option<usize>) -> String {
     let rows: Vec<Vec<String>> =
-        table.rows.iter().map(|row| row.iter().map(Cell::for_reading).collect()).collect();
+        table.rows.iter().map(|row| row.iter().map(TableCell::for_reading).collect()).collect();
     let least: Vec<usize> = (0..table.columns.len())
         .map(|column| {
             let cells = rows.iter().filter_map(|row| row.get(column));
@@ -67,7 +67,7 @@ fn longest_word(text: &str) -> usize {
     text.split(' ').map(|word| word.chars().count()).max().unwrap_or(0)
 }
 
-fn drawn(table: &Table, rows: Vec<Vec<String>>, least: &[usize], width: Option<usize>) -> String {
+fn drawn(table: &FormattedTable, rows: Vec<Vec<String>>, least: &[usize], width: Option<usize>) -> String {
     let mut drawn = comfy_table::Table::new();
     // Rules around the table and below the headings, none between rows.
     drawn.load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none())).set_content_arrangement(
@@ -93,7 +93,7 @@ fn drawn(table: &Table, rows: Vec<Vec<String>>, least: &[usize], width: Option<u
 }
 
 /// Renders rows as records: one line for each cell, named by its column; a blank line between rows.
-fn records(table: &Table, rows: &[Vec<String>], width: usize) -> String {
+fn records(table: &FormattedTable, rows: &[Vec<String>], width: usize) -> String {
     let one = |row: &Vec<String>| {
         let lines = table.columns.iter().zip(row).filter(|(_, text)| !text.is_empty());
         lines.map(|(column, text)| wrapped(&format!("  {column}: {text}"), width)).collect::<String>()
@@ -126,13 +126,18 @@ fn wrapped(text: &str, width: usize) -> String {
 mod tests {
     use super::*;
 
-    fn table() -> Table {
+    fn table() -> FormattedTable {
         let columns =
             ["integrator", "steps of an orbit", "largest error of the energy", "processor time (s)"];
         let row = |name: &str, steps: u64| {
-            vec![Cell::Text(name.into()), Cell::Count(steps), Cell::Number(123_456.789, 3), Cell::Nothing]
+            vec![
+                TableCell::Text(name.into()),
+                TableCell::Count(steps),
+                TableCell::Number(123_456.789, 3),
+                TableCell::Nothing,
+            ]
         };
-        Table {
+        FormattedTable {
             name: "t".into(),
             title: "Errors of integrators over the steps of an orbit and their cost on this host".into(),
             columns: columns.map(str::to_owned).to_vec(),

@@ -3,12 +3,12 @@
 //! Only files that this program wrote are overwritten. An item's folder is ours if its `provenance.json` lists every file in
 //! it; a page, if it carries our mark; the whole folder, if it is empty or holds one of these, or one of our journals.
 
-use super::Made;
+use super::FinishedItem;
 use super::journal::{self, NAME as JOURNAL};
 use super::made::{self, LONGEST, bytes_of, files_of};
 use crate::claims;
-use crate::console::{Failure, to_json};
-use crate::frame::Scope;
+use crate::console::{CommandFailure, to_json};
+use crate::frame::ExpressionScope;
 use crate::pages::Page;
 use crate::provenance::{Provenance, built};
 use crate::report::figure::Figure;
@@ -18,11 +18,11 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
+use stripmine_physics::io::owned_folder::{FolderContent, FolderKind, LOCK, OwnedFolder};
 use stripmine_physics::io::regular_file;
 use stripmine_physics::origin::Origin;
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 
 /// File with an item's provenance and file list; the only file of an item that differs from run to run.
 const PROVENANCE: &str = "provenance.json";
@@ -32,7 +32,10 @@ const PAGES: [(&str, &str); 2] = [("README.md", page::MARK), ("index.html", html
 const RESULTS: FolderKind = FolderKind {
     lock: LOCK,
     list: PROVENANCE,
-    holds: Holds::Folders { marked: &[PAGES[0], PAGES[1], (JOURNAL, journal::MARK)], below: &["host"] },
+    holds: FolderContent::Folders {
+        marked: &[PAGES[0], PAGES[1], (JOURNAL, journal::MARK)],
+        below: &["host"],
+    },
 };
 
 /// Error for committed results that a build with uncommitted changes would overwrite.
@@ -42,17 +45,17 @@ const RESULTS: FolderKind = FolderKind {
      commit the changes and build again, or choose another --out",
     quoted::path(.0)
 )]
-struct Uncommitted(PathBuf);
+struct UncommittedBuild(PathBuf);
 
-impl Reported for Uncommitted {
-    fn class(&self) -> Class {
-        Class::Usage
+impl Reported for UncommittedBuild {
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Usage
     }
 }
 
 /// Contents of `provenance.json`: the provenance of an item, and the names of its files.
 #[derive(Serialize)]
-struct Listed<'a> {
+struct ProvenanceFile<'a> {
     #[serde(flatten)]
     provenance: &'a Provenance,
     files: Vec<&'a str>,
@@ -66,7 +69,7 @@ impl Folder {
     ///
     /// # Errors
     /// If its content is not ours, is committed while the source of this program is not, or another process writes to it.
-    pub(crate) fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, Failure> {
+    pub(crate) fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, CommandFailure> {
         traceable(path, &built())?;
         let pages = PAGES.iter().filter(|_| pages).map(|(name, _)| (*name).to_owned());
         let wanted: Vec<String> = items.iter().flat_map(|name| Section::folders(name)).chain(pages).collect();
@@ -85,9 +88,9 @@ impl Folder {
     pub(crate) fn write(
         &self,
         name: &str,
-        made: &Made,
+        made: &FinishedItem,
         provenance: &Provenance,
-    ) -> Result<(PathBuf, Section), Failure> {
+    ) -> Result<(PathBuf, Section), CommandFailure> {
         let mut provenance = provenance.clone();
         provenance.processes = made.processes.unwrap_or(provenance.processes);
         if !made.repeated.is_empty() {
@@ -96,7 +99,7 @@ impl Folder {
         let (section, files) = files_of(name, made, &provenance)?;
         let mut listed = vec![PROVENANCE];
         listed.extend(files.iter().map(|(name, _)| name.as_str()));
-        let list = to_json(&Listed { provenance: &provenance, files: listed })? + "\n";
+        let list = to_json(&ProvenanceFile { provenance: &provenance, files: listed })? + "\n";
         let all = std::iter::once((PROVENANCE, list.as_bytes()))
             .chain(files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
         let folder = self.0.write_folder(&section.folder(), all)?;
@@ -107,13 +110,13 @@ impl Folder {
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    pub(crate) fn write_page(&self, items: &[&str]) -> Result<(), Failure> {
+    pub(crate) fn write_page(&self, items: &[&str]) -> Result<(), CommandFailure> {
         let (mut sections, mut left_out) = (Vec::new(), Vec::new());
         for item in items {
             match self.read(item)? {
-                Known::There(section) => sections.push(*section),
-                Known::OfAnotherVersion => left_out.push((*item).to_owned()),
-                Known::Absent => {}
+                ItemState::There(section) => sections.push(*section),
+                ItemState::OfAnotherVersion => left_out.push((*item).to_owned()),
+                ItemState::Absent => {}
             }
         }
         // The sort is stable: within a chapter, items keep the order of the list.
@@ -135,9 +138,9 @@ impl Folder {
     }
 
     /// Reads the item's section, if the folder has it.
-    fn read(&self, name: &str) -> Result<Known, Failure> {
-        let Some(folder) = self.item(name) else { return Ok(Known::Absent) };
-        let Some(provenance) = self.provenance(name)? else { return Ok(Known::OfAnotherVersion) };
+    fn read(&self, name: &str) -> Result<ItemState, CommandFailure> {
+        let Some(folder) = self.item(name) else { return Ok(ItemState::Absent) };
+        let Some(provenance) = self.provenance(name)? else { return Ok(ItemState::OfAnotherVersion) };
         let made = match Page::of(name)? {
             Some(page) => made::read(&folder, &page)?,
             None => None,
@@ -147,8 +150,8 @@ impl Folder {
             Err(_) if provenance.origin.version != built().version => None,
             section => section?,
         };
-        let there = |section| Known::There(Box::new(Section { provenance: Some(provenance), ..section }));
-        Ok(section.map_or(Known::OfAnotherVersion, there))
+        let there = |section| ItemState::There(Box::new(Section { provenance: Some(provenance), ..section }));
+        Ok(section.map_or(ItemState::OfAnotherVersion, there))
     }
 
     /// Section of an item from its stored data and the current template. Files that the template changes are written again; the
@@ -157,9 +160,9 @@ impl Folder {
         &self,
         name: &str,
         folder: &Path,
-        made: &Made,
+        made: &FinishedItem,
         provenance: &Provenance,
-    ) -> Result<Section, Failure> {
+    ) -> Result<Section, CommandFailure> {
         let (section, files) = files_of(name, made, provenance)?;
         let is_there = |(name, bytes): &(String, Vec<u8>)| {
             regular_file::read(&folder.join(name), LONGEST).is_ok_and(|there| there == *bytes)
@@ -174,7 +177,7 @@ impl Folder {
     ///
     /// # Errors
     /// If it cannot be read.
-    pub fn provenance(&self, name: &str) -> Result<Option<Provenance>, Failure> {
+    pub fn provenance(&self, name: &str) -> Result<Option<Provenance>, CommandFailure> {
         let Some(folder) = self.item(name) else { return Ok(None) };
         Ok(serde_json::from_slice(&bytes_of(&folder.join(PROVENANCE))?).ok())
     }
@@ -183,7 +186,7 @@ impl Folder {
     ///
     /// # Errors
     /// If they cannot be read.
-    pub fn scope(&self, name: &str) -> Result<Option<Scope>, Failure> {
+    pub fn scope(&self, name: &str) -> Result<Option<ExpressionScope>, CommandFailure> {
         self.item(name).map_or(Ok(None), |folder| made::scope(&folder))
     }
 
@@ -191,10 +194,10 @@ impl Folder {
     ///
     /// # Errors
     /// If it cannot be read, or its template or a claim names missing data.
-    pub fn section(&self, name: &str) -> Result<Option<Section>, Failure> {
+    pub fn section(&self, name: &str) -> Result<Option<Section>, CommandFailure> {
         match self.read(name)? {
-            Known::There(section) => Ok(Some(*section)),
-            Known::OfAnotherVersion | Known::Absent => Ok(None),
+            ItemState::There(section) => Ok(Some(*section)),
+            ItemState::OfAnotherVersion | ItemState::Absent => Ok(None),
         }
     }
 
@@ -206,7 +209,7 @@ impl Folder {
 }
 
 /// State of an item in the folder.
-enum Known {
+enum ItemState {
     There(Box<Section>),
     /// Another version of the program wrote the files.
     OfAnotherVersion,
@@ -214,9 +217,9 @@ enum Known {
 }
 
 /// Refuses to overwrite committed results with results that no commit can reproduce.
-fn traceable(path: &Path, origin: &Origin) -> Result<(), Uncommitted> {
+fn traceable(path: &Path, origin: &Origin) -> Result<(), UncommittedBuild> {
     match !origin.is_committed() && is_committed(path) {
-        true => Err(Uncommitted(path.to_owned())),
+        true => Err(UncommittedBuild(path.to_owned())),
         false => Ok(()),
     }
 }
@@ -254,7 +257,7 @@ mod tests {
         let refused = traceable(&kept, &of(true)).unwrap_err();
         assert_eq!(refused.0, kept);
         assert!(refused.to_string().contains("another --out"), "{refused}");
-        assert_eq!(Failure::from(refused).exit_code(), 2);
+        assert_eq!(CommandFailure::from(refused).exit_code(), 2);
         assert!(traceable(&kept, &of(false)).is_ok());
         fs::remove_dir_all(&kept).unwrap();
         assert!(traceable(&kept, &of(true)).is_err());

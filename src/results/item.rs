@@ -1,22 +1,22 @@
 //! Items of the report: tables and figures of the papers or of our own, by name.
 
-use super::{Lab, Made, Size};
+use super::{FinishedItem, StudyEnvironment, StudySize};
 use crate::console;
-use crate::pages::{Cost, Page};
+use crate::pages::{ItemCost, Page};
 use crate::report::Chapter;
 
 /// Callback that receives the finished fraction of a piece of work.
 pub(crate) type Progress<'p> = &'p (dyn Fn(f64) + Sync);
 
 /// Function that makes an item.
-type Make = fn(&Lab<'_>, Size) -> Result<Made, console::Failure>;
+type ItemMaker = fn(&StudyEnvironment<'_>, StudySize) -> Result<FinishedItem, console::CommandFailure>;
 
 /// Item of the report.
 #[derive(Debug)]
 pub(crate) struct Item {
     /// Name on the command line, and of its template.
     pub name: &'static str,
-    make: Make,
+    make: ItemMaker,
 }
 
 /// Memory of an item without a page (MiB).
@@ -24,7 +24,7 @@ const USUAL_MEMORY: u64 = 256;
 
 impl Item {
     /// Item whose template has title, chapter and cost.
-    pub(crate) const fn of(name: &'static str, make: Make) -> Item {
+    pub(crate) const fn of(name: &'static str, make: ItemMaker) -> Item {
         Item { name, make }
     }
 
@@ -41,8 +41,8 @@ impl Item {
     }
 
     /// Cost stated in the template.
-    fn cost(&self) -> Cost {
-        let none = Cost { quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
+    fn cost(&self) -> ItemCost {
+        let none = ItemCost { quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
         self.page().map_or(none, |page| page.cost())
     }
 
@@ -57,12 +57,12 @@ impl Item {
     }
 
     /// Expected duration (s).
-    pub(crate) fn seconds(&self, size: Size) -> f64 {
+    pub(crate) fn seconds(&self, size: StudySize) -> f64 {
         let cost = self.cost();
         match size {
-            Size::Quick => cost.quick.unwrap_or(cost.full),
-            Size::Full => cost.full,
-            Size::All => cost.all.unwrap_or(cost.full),
+            StudySize::Quick => cost.quick.unwrap_or(cost.full),
+            StudySize::Full => cost.full,
+            StudySize::All => cost.all.unwrap_or(cost.full),
         }
     }
 
@@ -76,7 +76,11 @@ impl Item {
     ///
     /// # Errors
     /// Errors of its study.
-    pub(crate) fn make(&self, lab: &Lab<'_>, size: Size) -> Result<Made, console::Failure> {
+    pub(crate) fn make(
+        &self,
+        lab: &StudyEnvironment<'_>,
+        size: StudySize,
+    ) -> Result<FinishedItem, console::CommandFailure> {
         (self.make)(lab, size)
     }
 }

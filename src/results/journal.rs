@@ -6,7 +6,7 @@
 
 use super::journal_error::JournalError;
 use super::meter::{for_each_below, side_by_side};
-use super::team::{Runs, Team};
+use super::team::{ProcessTeam, RunResults};
 use crc32fast::Hasher;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -28,14 +28,14 @@ const LONGEST: u64 = 1 << 30;
 
 /// Identity of the study that a journal belongs to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Identity {
+pub(crate) struct JournalIdentity {
     /// Study and scene, for reading.
     pub of: String,
     /// Digest of everything that results depend on.
     pub(crate) digest: String,
 }
 
-impl Identity {
+impl JournalIdentity {
     /// First line of its journal.
     fn heading(&self) -> Result<String, serde_json::Error> {
         Ok(format!(
@@ -48,7 +48,7 @@ impl Identity {
 
 /// Line of the journal: a finished run.
 #[derive(Serialize, Deserialize)]
-struct Line {
+struct JournalLine {
     key: String,
     value: Value,
 }
@@ -58,7 +58,7 @@ const BEFORE: &str = "{\"checksum\":\"";
 /// Separator between the checksum and the text it covers.
 const BEHIND: &str = "\",";
 
-impl Line {
+impl JournalLine {
     /// Formats the line for the journal with this digest.
     fn text(&self, digest: &str) -> Result<String, serde_json::Error> {
         let text = serde_json::to_string(self)?;
@@ -67,7 +67,7 @@ impl Line {
     }
 
     /// Parses a line of the journal with this digest; none if its checksum is wrong.
-    fn read(text: &str, digest: &str) -> Option<Line> {
+    fn read(text: &str, digest: &str) -> Option<JournalLine> {
         let (stated, rest) = text.strip_prefix(BEFORE)?.split_once(BEHIND)?;
         let is_whole = stated == format!("{:08x}", checksum(digest, rest.strip_suffix('\n')?));
         serde_json::from_str(text).ok().filter(|_| is_whole)
@@ -84,7 +84,7 @@ fn checksum(digest: &str, text: &str) -> u32 {
 
 /// Finished runs of a study.
 pub(crate) struct Journal {
-    known: RwLock<Runs>,
+    known: RwLock<RunResults>,
     /// Number of runs read from the file.
     before: usize,
     /// Open file; none if nothing is stored.
@@ -93,8 +93,8 @@ pub(crate) struct Journal {
     digest: String,
     changed: Vec<usize>,
     /// Processes that make the study together, and the runs this one has made since the last exchange.
-    team: Option<Team>,
-    made: Mutex<Runs>,
+    team: Option<ProcessTeam>,
+    made: Mutex<RunResults>,
 }
 
 impl Journal {
@@ -118,22 +118,22 @@ impl Journal {
     /// [`JournalError`] if it belongs to another study, or cannot be read and written.
     pub(crate) fn open(
         folder: &Path,
-        identity: &Identity,
-        team: Option<Team>,
+        identity: &JournalIdentity,
+        team: Option<ProcessTeam>,
     ) -> Result<Journal, JournalError> {
         let Some(team) = team else { return Journal::read(folder, identity) };
         // The first process cleans the file before others read it, and nothing is added before all have read it.
         let first = team.is_first().then(|| Journal::read(folder, identity)).transpose()?;
-        let own = Runs::from([(identity.digest.clone(), Value::Null)]);
+        let own = RunResults::from([(identity.digest.clone(), Value::Null)]);
         if team.exchanged(&own)? != own {
             return Err(JournalError::Differs);
         }
         let journal = first.map_or_else(|| Journal::read(folder, identity), Ok)?;
-        team.exchanged(&Runs::new())?;
+        team.exchanged(&RunResults::new())?;
         Ok(Journal { team: Some(team), ..journal })
     }
 
-    fn read(folder: &Path, identity: &Identity) -> Result<Journal, JournalError> {
+    fn read(folder: &Path, identity: &JournalIdentity) -> Result<Journal, JournalError> {
         let path = folder.join(NAME);
         let at = |action| FileError::at(&path, action);
         let text = match regular_file::read(&path, LONGEST) {
@@ -147,10 +147,10 @@ impl Journal {
         if first != heading {
             return Err(refused(path, first, identity));
         }
-        let (mut known, mut kept, mut changed) = (Runs::new(), heading, vec![]);
+        let (mut known, mut kept, mut changed) = (RunResults::new(), heading, vec![]);
         for (number, line) in (2..).zip(lines) {
-            match Line::read(line, &identity.digest) {
-                Some(Line { key, value }) => {
+            match JournalLine::read(line, &identity.digest) {
+                Some(JournalLine { key, value }) => {
                     known.insert(key, value);
                     kept.push_str(line);
                 }
@@ -186,7 +186,7 @@ impl Journal {
 
     /// Returns true if this process writes the results and measures times.
     pub(crate) fn is_first(&self) -> bool {
-        self.team.as_ref().is_none_or(Team::is_first)
+        self.team.as_ref().is_none_or(ProcessTeam::is_first)
     }
 
     /// Results of `run` for independent inputs, computed on all threads of all processes. `run` must get its results from
@@ -272,8 +272,8 @@ impl Journal {
 
     fn keep(&self, key: &str, value: &impl Serialize) -> Result<(), FileError> {
         let Some(file) = &self.file else { return Ok(()) };
-        let line = serde_json::to_value(value).map(|value| Line { key: key.to_owned(), value });
-        if let (Some(_), Ok(Line { key, value })) = (&self.team, &line) {
+        let line = serde_json::to_value(value).map(|value| JournalLine { key: key.to_owned(), value });
+        if let (Some(_), Ok(JournalLine { key, value })) = (&self.team, &line) {
             let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
             made.insert(key.clone(), value.clone());
         }
@@ -284,9 +284,10 @@ impl Journal {
 }
 
 /// Error for a journal whose first line differs from ours.
-fn refused(file: PathBuf, first: &str, ours: &Identity) -> JournalError {
-    let theirs = serde_json::from_str::<Identity>(first).ok().filter(|_| first.starts_with(MARK));
-    let said = |it: &Identity| format!("{} ({})", it.of, it.digest.chars().take(8).collect::<String>());
+fn refused(file: PathBuf, first: &str, ours: &JournalIdentity) -> JournalError {
+    let theirs = serde_json::from_str::<JournalIdentity>(first).ok().filter(|_| first.starts_with(MARK));
+    let said =
+        |it: &JournalIdentity| format!("{} ({})", it.of, it.digest.chars().take(8).collect::<String>());
     match theirs {
         Some(theirs) => JournalError::Other { theirs: said(&theirs), ours: said(ours), file },
         None => JournalError::Foreign(file),
@@ -298,10 +299,10 @@ mod tests {
     use super::*;
     use std::fs;
     use stripmine_physics::io::owned_folder::is_marked;
-    use stripmine_physics::reported::{Class, Reported};
+    use stripmine_physics::reported::{ErrorClass, Reported};
 
-    fn identity(digest: &str) -> Identity {
-        Identity { of: "a study of a scene".to_owned(), digest: digest.to_owned() }
+    fn identity(digest: &str) -> JournalIdentity {
+        JournalIdentity { of: "a study of a scene".to_owned(), digest: digest.to_owned() }
     }
 
     fn run(journal: &Journal, key: &str, value: u64) -> u64 {
@@ -330,7 +331,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         Journal::open(folder.path(), &identity("12345678"), None).unwrap();
         let other = Journal::open(folder.path(), &identity("87654321"), None).err().unwrap();
-        assert!(matches!(other, JournalError::Other { .. }) && other.class() == Class::Usage, "{other}");
+        assert!(matches!(other, JournalError::Other { .. }) && other.class() == ErrorClass::Usage, "{other}");
         for mine in ["mine\n", "{\"stripmine journal\":1}\n"] {
             fs::write(folder.path().join(NAME), mine).unwrap();
             let foreign = Journal::open(folder.path(), &identity("12345678"), None).err().unwrap();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use stripmine_physics::io::FileError;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::RankError;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::reported::{ErrorClass, FilePlace, Reported};
 
 /// Errors of opening or writing the journal of a study.
 #[derive(Debug, thiserror::Error)]
@@ -44,10 +44,12 @@ pub(crate) enum JournalError {
 }
 
 impl Reported for JournalError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
-            JournalError::Other { .. } | JournalError::Foreign(_) | JournalError::Differs => Class::Usage,
-            JournalError::File(_) | JournalError::Rank(_) => Class::InputOutput,
+            JournalError::Other { .. } | JournalError::Foreign(_) | JournalError::Differs => {
+                ErrorClass::Usage
+            }
+            JournalError::File(_) | JournalError::Rank(_) => ErrorClass::InputOutput,
         }
     }
 

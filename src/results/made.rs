@@ -1,10 +1,10 @@
 //! Files of an item: written from the result of a study, and read back.
 
-use super::Made;
+use super::FinishedItem;
 use crate::claims;
-use crate::console::Failure;
+use crate::console::CommandFailure;
 use crate::frame::csv::{self, Package};
-use crate::frame::{Frame, Scope};
+use crate::frame::{ExpressionScope, ResultFrame};
 use crate::pages::{Page, Shown};
 use crate::provenance::Provenance;
 use crate::report::Section;
@@ -24,15 +24,15 @@ const FILM: &str = "film.json";
 const OF_FIGURE: &str = ".data";
 
 /// Name and contents of a file.
-type File = (String, Vec<u8>);
+type NamedFile = (String, Vec<u8>);
 
 /// Section of an item, and its files except `provenance.json`. Claims belong to items of the report, not to studies of other scenes.
 pub(super) fn files_of(
     name: &str,
-    made: &Made,
+    made: &FinishedItem,
     provenance: &Provenance,
-) -> Result<(Section, Vec<File>), Failure> {
-    let Made { frames, pictures, film, files, seeds, .. } = made;
+) -> Result<(Section, Vec<NamedFile>), CommandFailure> {
+    let FinishedItem { frames, pictures, film, files, seeds, .. } = made;
     let section = match Page::of(name)? {
         Some(page) => {
             let shown = Shown { frames, pictures, film: film.as_ref(), files, seeds };
@@ -41,12 +41,12 @@ pub(super) fn files_of(
         }
         None => Section::new(name, name),
     };
-    let of_figures = section.figures.iter().filter_map(figure::data).map(|table| Frame::from(&table));
-    let frames: Vec<Frame> = frames.iter().cloned().chain(of_figures).collect();
+    let of_figures = section.figures.iter().filter_map(figure::data).map(|table| ResultFrame::from(&table));
+    let frames: Vec<ResultFrame> = frames.iter().cloned().chain(of_figures).collect();
     let mut all = vec![];
     for frame in &frames {
         let mut bytes = vec![];
-        csv::write(frame, &mut bytes).map_err(Failure::writing("CSV"))?;
+        csv::write(frame, &mut bytes).map_err(CommandFailure::writing("CSV"))?;
         all.push((format!("{}.csv", frame.name), bytes));
     }
     let package = Package::of(&section.name, &section.title, seeds, &frames);
@@ -62,14 +62,15 @@ pub(super) fn files_of(
 }
 
 /// Reads an item from its folder, for a template; none if another version wrote it.
-pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> {
+pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<FinishedItem>, CommandFailure> {
     if !folder.join(PACKAGE).exists() {
         return Ok(None);
     }
-    let text =
-        |name: &str| Ok::<_, Failure>(String::from_utf8_lossy(&bytes_of(&folder.join(name))?).into_owned());
+    let text = |name: &str| {
+        Ok::<_, CommandFailure>(String::from_utf8_lossy(&bytes_of(&folder.join(name))?).into_owned())
+    };
     let Ok(package) = serde_json::from_str::<Package>(&text(PACKAGE)?) else { return Ok(None) };
-    let mut made = Made { seeds: package.seeds, ..Made::default() };
+    let mut made = FinishedItem { seeds: package.seeds, ..FinishedItem::default() };
     let drawn = page.drawn();
     let has_picture = |table: &str| table.strip_suffix(OF_FIGURE).is_some_and(|it| drawn.contains(&it));
     for resource in package.resources {
@@ -102,7 +103,7 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<Made>, Failure> 
 }
 
 /// Reads the tables of an item's folder, for expressions; none if another version wrote it.
-pub(super) fn scope(folder: &Path) -> Result<Option<Scope>, Failure> {
+pub(super) fn scope(folder: &Path) -> Result<Option<ExpressionScope>, CommandFailure> {
     let mut frames = vec![];
     if folder.join(PACKAGE).exists() {
         let Ok(package) = serde_json::from_slice::<Package>(&bytes_of(&folder.join(PACKAGE))?) else {
@@ -114,17 +115,17 @@ pub(super) fn scope(folder: &Path) -> Result<Option<Scope>, Failure> {
             frames.push(frame);
         }
     }
-    Ok(Some(Scope::of(frames)))
+    Ok(Some(ExpressionScope::of(frames)))
 }
 
 /// Reads a file.
-pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, Failure> {
+pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, CommandFailure> {
     let what = || format!("reading {}", quoted::path(path));
-    regular_file::read(path, LONGEST).map_err(|cause| Failure::InputOutput { what: what(), cause })
+    regular_file::read(path, LONGEST).map_err(|cause| CommandFailure::InputOutput { what: what(), cause })
 }
 
 /// JSON without white space: datasets are for programs.
-fn compact(data: &impl Serialize) -> Result<String, Failure> {
-    let text = serde_json::to_string(data).map_err(|cause| Failure::writing("JSON")(cause.into()))?;
+fn compact(data: &impl Serialize) -> Result<String, CommandFailure> {
+    let text = serde_json::to_string(data).map_err(|cause| CommandFailure::writing("JSON")(cause.into()))?;
     Ok(text + "\n")
 }

@@ -31,16 +31,16 @@ pub(super) fn for_each_below(count: usize, work: &(dyn Fn(usize) + Sync)) {
 }
 
 /// Meter of progress: adds up finished work and reports its fraction.
-pub(crate) struct Meter<'p> {
+pub(crate) struct ProgressMeter<'p> {
     done: Mutex<f64>,
     all: Mutex<f64>,
     progress: Progress<'p>,
 }
 
-impl<'p> Meter<'p> {
+impl<'p> ProgressMeter<'p> {
     /// Meter of work that is expected to total `all` cases, steps or seconds.
     pub(crate) fn new(all: f64, progress: Progress<'p>) -> Self {
-        Meter { done: Mutex::new(0.0), all: Mutex::new(all), progress }
+        ProgressMeter { done: Mutex::new(0.0), all: Mutex::new(all), progress }
     }
 
     /// Sets the expected remaining work.
@@ -98,14 +98,14 @@ mod tests {
     fn results_are_in_the_order_of_cases() {
         let heard = Mutex::new(vec![]);
         let progress = |share: f64| heard.lock().unwrap().push(share);
-        let meter = Meter::new(8.0, &progress);
+        let meter = ProgressMeter::new(8.0, &progress);
         let square = |case: &u32| Ok::<_, ()>(case * case);
         assert_eq!(meter.each(&[1, 2, 3, 4], square), Ok(vec![1, 4, 9, 16]));
         assert_eq!(meter.each_from_last(&[1, 2, 3, 4], square), Ok(vec![1, 4, 9, 16]));
         let mut heard = heard.lock().unwrap().clone();
         heard.sort_by(f64::total_cmp);
         assert_eq!(heard, [1, 2, 3, 4, 5, 6, 7, 8].map(|done| f64::from(done) / 8.0));
-        let meter = Meter::new(2.0, &|_| ());
+        let meter = ProgressMeter::new(2.0, &|_| ());
         assert_eq!(meter.each(&[1, 2], |&case| if case == 2 { Err(case) } else { Ok(()) }), Err(2));
     }
 }

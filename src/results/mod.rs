@@ -10,41 +10,41 @@ mod team;
 
 pub use folder::Folder;
 pub(crate) use item::{Item, Progress};
-pub(crate) use journal::{Identity, Journal};
+pub(crate) use journal::{Journal, JournalIdentity};
 pub(crate) use journal_error::JournalError;
-pub(crate) use meter::{Meter, side_by_side};
-pub(crate) use team::Team;
+pub(crate) use meter::{ProgressMeter, side_by_side};
+pub(crate) use team::ProcessTeam;
 
-use crate::frame::Frame;
-use crate::provenance::Measurement;
+use crate::frame::ResultFrame;
+use crate::provenance::RepeatedMeasurement;
 use crate::report::figure::Picture;
 use crate::report::section::Film;
 use std::path::PathBuf;
 
 /// Environment of a study.
-pub(crate) struct Lab<'p> {
+pub(crate) struct StudyEnvironment<'p> {
     /// Receives the finished fraction of the work.
     pub progress: Progress<'p>,
     /// Program that measures in separate processes; none if this process measures.
     pub program: Option<PathBuf>,
 }
 
-impl<'p> Lab<'p> {
+impl<'p> StudyEnvironment<'p> {
     /// Environment that measures in this process.
     #[cfg(test)]
-    pub(crate) fn here(progress: Progress<'p>) -> Lab<'p> {
-        Lab { progress, program: None }
+    pub(crate) fn here(progress: Progress<'p>) -> StudyEnvironment<'p> {
+        StudyEnvironment { progress, program: None }
     }
 
     /// Environment that measures in separate processes.
-    pub(crate) fn apart(progress: Progress<'p>) -> Lab<'p> {
-        Lab { progress, program: std::env::current_exe().ok() }
+    pub(crate) fn apart(progress: Progress<'p>) -> StudyEnvironment<'p> {
+        StudyEnvironment { progress, program: std::env::current_exe().ok() }
     }
 }
 
 /// Size of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Size {
+pub(crate) enum StudySize {
     /// All items together take under a minute.
     Quick,
     /// The extent of the papers, in five minutes.
@@ -55,8 +55,8 @@ pub(crate) enum Size {
 
 /// Finished item.
 #[derive(Default)]
-pub(crate) struct Made {
-    pub frames: Vec<Frame>,
+pub(crate) struct FinishedItem {
+    pub frames: Vec<ResultFrame>,
     /// Pictures that are not charts of frames, by name.
     pub pictures: Vec<(String, Picture)>,
     pub(crate) film: Option<Film>,
@@ -67,13 +67,13 @@ pub(crate) struct Made {
     /// Number of processes that measured times; none if the provenance has it.
     pub(crate) processes: Option<usize>,
     /// Earlier measurements that it repeats.
-    pub repeated: Vec<Measurement>,
+    pub repeated: Vec<RepeatedMeasurement>,
 }
 
-impl Made {
+impl FinishedItem {
     /// Item with tables, whose page is a template.
-    pub(crate) fn of(frames: impl IntoIterator<Item = Frame>) -> Made {
-        Made { frames: frames.into_iter().collect(), ..Made::default() }
+    pub(crate) fn of(frames: impl IntoIterator<Item = ResultFrame>) -> FinishedItem {
+        FinishedItem { frames: frames.into_iter().collect(), ..FinishedItem::default() }
     }
 
     /// Data as JSON: each frame by name, as a list of rows.
@@ -83,26 +83,26 @@ impl Made {
 
     /// Adds a picture that is not a chart of a frame.
     #[must_use]
-    pub(crate) fn with_picture(mut self, name: &str, picture: Picture) -> Made {
+    pub(crate) fn with_picture(mut self, name: &str, picture: Picture) -> FinishedItem {
         self.pictures.push((name.to_owned(), picture));
         self
     }
 
     /// Adds a film.
     #[must_use]
-    pub(crate) fn with_film(self, film: Film) -> Made {
-        Made { film: Some(film), ..self }
+    pub(crate) fn with_film(self, film: Film) -> FinishedItem {
+        FinishedItem { film: Some(film), ..self }
     }
 
     /// Adds the seeds of the random numbers.
     #[must_use]
-    pub(crate) fn with_seeds(self, seeds: impl IntoIterator<Item = u64>) -> Made {
-        Made { seeds: seeds.into_iter().collect(), ..self }
+    pub(crate) fn with_seeds(self, seeds: impl IntoIterator<Item = u64>) -> FinishedItem {
+        FinishedItem { seeds: seeds.into_iter().collect(), ..self }
     }
 
     /// Adds a file.
     #[must_use]
-    pub(crate) fn with_file(mut self, name: &str, text: String) -> Made {
+    pub(crate) fn with_file(mut self, name: &str, text: String) -> FinishedItem {
         self.files.push((name.to_owned(), text));
         self
     }

@@ -8,35 +8,35 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use stripmine_physics::ranks::{Crew, Parcel, RankError, Ranks};
+use stripmine_physics::ranks::{Parcel, RankBackend, RankError, Ranks};
 
 /// Results of runs by key.
-pub(super) type Runs = BTreeMap<String, Value>;
+pub(super) type RunResults = BTreeMap<String, Value>;
 
 /// Runs of each process as JSON, none for one that has ended its part. The first process broadcasts them, or the error that ends the study.
-type Told = Result<Vec<Option<String>>, RankError>;
+type ExchangedRuns = Result<Vec<Option<String>>, RankError>;
 
 /// Membership of this process in the team.
-pub(crate) struct Team {
+pub(crate) struct ProcessTeam {
     ranks: Mutex<Box<dyn Ranks>>,
     rank: usize,
     count: usize,
     has_ended: AtomicBool,
 }
 
-impl Team {
+impl ProcessTeam {
     /// Team of the processes of a crew; none if this process is alone.
-    pub(crate) fn of(crew: Crew) -> Option<Team> {
+    pub(crate) fn of(crew: RankBackend) -> Option<ProcessTeam> {
         match crew {
-            Crew::Processes(join) => Some(Team::new(join())),
-            Crew::One | Crew::Threads(_) => None,
+            RankBackend::Processes(join) => Some(ProcessTeam::new(join())),
+            RankBackend::One | RankBackend::Threads(_) => None,
         }
     }
 
     /// Team with this process as one of several ranks.
-    pub(crate) fn new(ranks: Box<dyn Ranks>) -> Team {
+    pub(crate) fn new(ranks: Box<dyn Ranks>) -> ProcessTeam {
         let (rank, count) = (ranks.rank(), ranks.count());
-        Team { ranks: Mutex::new(ranks), rank, count, has_ended: AtomicBool::new(false) }
+        ProcessTeam { ranks: Mutex::new(ranks), rank, count, has_ended: AtomicBool::new(false) }
     }
 
     /// Returns true if this process writes, prints and measures times.
@@ -53,7 +53,7 @@ impl Team {
     ///
     /// # Errors
     /// [`RankError`] if the study has ended on the first process, or another process is lost.
-    pub(super) fn exchanged(&self, own: &Runs) -> Result<Runs, RankError> {
+    pub(super) fn exchanged(&self, own: &RunResults) -> Result<RunResults, RankError> {
         let text = serde_json::to_string(own).map_err(|_| RankError::Unreadable(self.rank))?;
         let ranks = self.ranks();
         let gathered = ranks.gather_messages(Some(text));
@@ -61,12 +61,12 @@ impl Team {
             Err(lost) if !self.is_first() => return Err(lost),
             gathered => self.is_first().then_some(gathered),
         };
-        let told: Told = ranks.tell_message(said)?;
+        let told: ExchangedRuns = ranks.tell_message(said)?;
         let all = told.inspect_err(|_| self.has_ended.store(true, Ordering::Relaxed))?;
-        let mut runs = Runs::new();
+        let mut runs = RunResults::new();
         for (rank, text) in all.iter().enumerate() {
             let Some(text) = text else { continue };
-            let of_rank: Runs = serde_json::from_str(text).map_err(|_| RankError::Unreadable(rank))?;
+            let of_rank: RunResults = serde_json::from_str(text).map_err(|_| RankError::Unreadable(rank))?;
             runs.extend(of_rank);
         }
         Ok(runs)
@@ -77,7 +77,7 @@ impl Team {
     }
 }
 
-impl Drop for Team {
+impl Drop for ProcessTeam {
     /// The first process ends the study on all, however it ended there; the others wait for that.
     fn drop(&mut self) {
         let ranks = self.ranks();
@@ -85,7 +85,7 @@ impl Drop for Team {
             // The runs of the others are discarded.
             let gathered = ranks.gather(Parcel::of(&None::<String>));
             let said = self.is_first().then_some(Err(RankError::Ended(0)));
-            let told = gathered.and_then(|_| ranks.tell_message::<Told>(said));
+            let told = gathered.and_then(|_| ranks.tell_message::<ExchangedRuns>(said));
             self.has_ended.store(!matches!(told, Ok(Ok(_))), Ordering::Relaxed);
         }
     }
@@ -93,24 +93,25 @@ impl Drop for Team {
 
 #[cfg(test)]
 mod tests {
-    use crate::results::{Identity, Journal, JournalError, Team};
+    use crate::results::{Journal, JournalError, JournalIdentity, ProcessTeam};
     use std::path::Path;
     use std::sync::Mutex;
     use std::thread;
     use stripmine_physics::ranks::local;
 
     /// Results of each rank; none if the study fails.
-    type Found = Vec<Option<Vec<u64>>>;
+    type RankResults = Vec<Option<Vec<u64>>>;
 
     /// Results of a study of three stages, and the rank that made each run.
-    fn study(folder: &Path, count: usize, fails: bool) -> (Found, Vec<(usize, u64)>) {
+    fn study(folder: &Path, count: usize, fails: bool) -> (RankResults, Vec<(usize, u64)>) {
         let made = Mutex::new(vec![]);
         let found = thread::scope(|scope| {
-            let one = |ranks: local::Local| {
+            let one = |ranks: local::ThreadRank| {
                 let made = &made;
                 move || {
-                    let identity = Identity { of: "a study".to_owned(), digest: "12345678".to_owned() };
-                    let team = Team::new(Box::new(ranks));
+                    let identity =
+                        JournalIdentity { of: "a study".to_owned(), digest: "12345678".to_owned() };
+                    let team = ProcessTeam::new(Box::new(ranks));
                     let rank = team.rank;
                     let journal = Journal::open(folder, &identity, Some(team)).ok()?;
                     let run = |&key: &u64| {

@@ -7,17 +7,17 @@ use stripmine_physics::number::significant;
 /// Time and severity of a warning, in rising order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Finding {
+pub(crate) enum WarningLevel {
     Within,
     Warned,
     Refused,
     WarnedByRun,
 }
 
-impl Finding {
+impl WarningLevel {
     /// True if the user is warned.
     pub(crate) fn is_told(self) -> bool {
-        self != Finding::Within
+        self != WarningLevel::Within
     }
 }
 
@@ -25,7 +25,7 @@ impl Finding {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Alarm {
     pub check: String,
-    pub(crate) finding: Finding,
+    pub(crate) finding: WarningLevel,
     /// Value over its limit, above 1 where the user is warned; none where any value is an error.
     pub share: Option<f64>,
     /// Message for the user.
@@ -37,13 +37,13 @@ impl Alarm {
     pub(crate) fn before(scene: &Prepared) -> Vec<Alarm> {
         let mut alarms: Vec<Alarm> = vec![];
         let limits = scene.step_limits.iter().map(|limit| {
-            let finding = if limit.is_passed() { Finding::Warned } else { Finding::Within };
+            let finding = if limit.is_passed() { WarningLevel::Warned } else { WarningLevel::Within };
             let share = significant(limit.share, 3);
             let message = format!("the step is {share} times the theoretical limit \"{}\"", limit.name);
             (limit.name, finding, limit.share, message)
         });
         let warnings = scene.warnings.iter().map(|warning| {
-            let finding = if warning.is_refusal { Finding::Refused } else { Finding::Warned };
+            let finding = if warning.is_refusal { WarningLevel::Refused } else { WarningLevel::Warned };
             (warning.check, finding, warning.share, format!("check: {}", warning.message))
         });
         for (check, finding, share, message) in limits.chain(warnings) {
@@ -60,10 +60,10 @@ impl Alarm {
     pub(crate) fn words(&self) -> String {
         let share = self.share.map_or(String::new(), |share| format!(" {}", significant(share, 3)));
         let told = match self.finding {
-            Finding::Within => "",
-            Finding::Warned => " warned",
-            Finding::Refused => " refused",
-            Finding::WarnedByRun => " warned by the run",
+            WarningLevel::Within => "",
+            WarningLevel::Warned => " warned",
+            WarningLevel::Refused => " refused",
+            WarningLevel::WarnedByRun => " warned by the run",
         };
         format!("{}{share}{told}", self.check)
     }
@@ -74,7 +74,7 @@ impl Alarm {
         let share = share.max(share.recip());
         Alarm {
             check: warning.check.to_owned(),
-            finding: Finding::WarnedByRun,
+            finding: WarningLevel::WarnedByRun,
             share: Some(share).filter(|share| share.is_finite()),
             message: format!("warning: {}", warning.message),
         }

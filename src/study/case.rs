@@ -1,37 +1,37 @@
 //! Scene of a study, with its configurations.
 
-use super::Choice;
-use crate::results::Identity;
+use super::SettingChoice;
+use crate::results::JournalIdentity;
 use sha2::{Digest, Sha256};
-use stripmine_physics::method::{Entry, Methods, Prepared, Until, prepare, vocabularies};
-use stripmine_physics::scene::{Overrides, SceneErrors, Values};
+use stripmine_physics::method::{MethodEntry, Methods, Prepared, Until, prepare, vocabularies};
+use stripmine_physics::scene::{Overrides, SceneErrors, SceneValues};
 
 /// Format of finished runs in journals; raised whenever their contents change.
 const JOURNALED: &str = "11";
 
 /// A scene, its method, and its own configuration.
-pub(crate) struct Case {
+pub(crate) struct StudyCase {
     what: String,
     /// Overrides as typed by the user; the values include them.
     overrides: Vec<String>,
     methods: Methods,
-    pub entry: &'static Entry,
+    pub entry: &'static MethodEntry,
     /// Values of the scene. Scene and start file are read once: all trials are of the same scene, even if the files change.
-    pub values: Values,
+    pub values: SceneValues,
     /// The scene, prepared with its own values.
     pub prepared: Prepared,
     /// Its own configuration.
-    pub own: Choice,
+    pub own: SettingChoice,
 }
 
-impl Case {
+impl StudyCase {
     /// Loads a scene by the name of a preset or the path of a file, with overrides.
     ///
     /// # Errors
     /// [`SceneErrors`] if the scene is invalid, or needs more memory than there is.
-    pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Case, SceneErrors> {
-        let text = Values::text(what, &vocabularies(methods))?;
-        Case::parse(what, &text, overrides, methods)
+    pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<StudyCase, SceneErrors> {
+        let text = SceneValues::text(what, &vocabularies(methods))?;
+        StudyCase::parse(what, &text, overrides, methods)
     }
 
     /// Parses a scene from its text, under a name, with overrides.
@@ -43,8 +43,8 @@ impl Case {
         text: &str,
         overrides: &[String],
         methods: Methods,
-    ) -> Result<Case, SceneErrors> {
-        Case::of(what, text, overrides, methods, None)
+    ) -> Result<StudyCase, SceneErrors> {
+        StudyCase::of(what, text, overrides, methods, None)
     }
 
     /// Parses a scene; the start file is shared with another scene that has read it, if one is given.
@@ -53,17 +53,17 @@ impl Case {
         text: &str,
         overrides: &[String],
         methods: Methods,
-        start: Option<&Values>,
-    ) -> Result<Case, SceneErrors> {
-        let values = Values::parse(what, text, overrides, &vocabularies(methods))?;
+        start: Option<&SceneValues>,
+    ) -> Result<StudyCase, SceneErrors> {
+        let values = SceneValues::parse(what, text, overrides, &vocabularies(methods))?;
         let values = match start {
             Some(other) => values.with_start_of(other),
             None => values.sharing_start(),
         };
         let (prepared, entry) = prepare(values.clone(), methods)?;
         prepared.memory.fits("scene")?;
-        let own = Choice::own(entry.axes, &prepared);
-        Ok(Case {
+        let own = SettingChoice::own(entry.axes, &prepared);
+        Ok(StudyCase {
             what: what.to_owned(),
             overrides: overrides.to_vec(),
             methods,
@@ -95,7 +95,7 @@ impl Case {
     }
 
     /// Identity of a study: digest of the resolved scene, the options and the version of the program.
-    pub(crate) fn identity(&self, study: &str, options: &str) -> Identity {
+    pub(crate) fn identity(&self, study: &str, options: &str) -> JournalIdentity {
         let mut sum = Sha256::new();
         for part in [study, JOURNALED, options, env!("CARGO_PKG_VERSION"), &self.prepared.scene] {
             sum.update(part.as_bytes());
@@ -103,7 +103,7 @@ impl Case {
         }
         sum.update(self.prepared.particles().checksum().as_bytes());
         let digest = sum.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        Identity { of: format!("{study} of {}", self.arguments()), digest }
+        JournalIdentity { of: format!("{study} of {}", self.arguments()), digest }
     }
 
     /// Prepares the scene with further overrides.
@@ -112,8 +112,8 @@ impl Case {
     }
 
     /// Parses another scene with the same methods, and the same start file if it has one.
-    pub(crate) fn beside(&self, text: &str) -> Result<Case, SceneErrors> {
-        Case::of(&self.what, text, &[], self.methods, Some(&self.values))
+    pub(crate) fn beside(&self, text: &str) -> Result<StudyCase, SceneErrors> {
+        StudyCase::of(&self.what, text, &[], self.methods, Some(&self.values))
     }
 }
 
@@ -121,7 +121,7 @@ impl Case {
 mod tests {
     use super::*;
     use std::fs;
-    use stripmine_physics::io::extxyz::{Frame, write};
+    use stripmine_physics::io::extxyz::{ParticleFrame, write};
     use stripmine_physics::method::{METHODS, load};
     use stripmine_physics::particles::Particles;
     use stripmine_physics::scene::TIME;
@@ -134,7 +134,7 @@ mod tests {
         let [scene, start] = ["scene.toml", "start.xyz"].map(|name| folder.path().join(name));
         let (gas, _) = load("hard-disks", &["particles.count=20".to_owned()], METHODS).unwrap();
         let written = |particles: &Particles| {
-            let frame = Frame {
+            let frame = ParticleFrame {
                 particles: particles.clone(),
                 cell: gas.domain.lengths(),
                 origin: gas.domain.corner(),
@@ -152,9 +152,9 @@ mod tests {
             gas.domain.lengths()
         );
         fs::write(&scene, &text).unwrap();
-        let case = Case::load(scene.to_str().unwrap(), &[], METHODS).unwrap();
+        let case = StudyCase::load(scene.to_str().unwrap(), &[], METHODS).unwrap();
         let checksum = case.prepared.particles().checksum();
-        let again = |case: &Case| {
+        let again = |case: &StudyCase| {
             case.prepared_with(&Overrides::new().set(&TIME, 2.0)).unwrap().particles().checksum()
         };
         // First another frame, then no files.

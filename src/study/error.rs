@@ -1,11 +1,11 @@
 //! Reasons why a study has no result.
 
 use crate::results::JournalError;
-use stripmine_physics::method::Failure;
+use stripmine_physics::method::PhysicsFailure;
 use stripmine_physics::method::observed::UnknownName;
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::number::significant;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::SceneErrors;
 
 /// Reason why a study has no result.
@@ -44,7 +44,7 @@ pub(crate) enum StudyError {
     Scene(#[from] SceneErrors),
     /// A run of the scene failed.
     #[error(transparent)]
-    Physics(#[from] Failure),
+    Physics(#[from] PhysicsFailure),
     /// A timing of the scene failed.
     #[error(transparent)]
     Measurement(#[from] MeasurementError),
@@ -104,13 +104,13 @@ pub(crate) enum StudyError {
 }
 
 impl Reported for StudyError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
             StudyError::OverBeforeOutput { .. }
             | StudyError::EveryRunFails { .. }
-            | StudyError::Interrupted => Class::Precondition,
-            StudyError::Threads(_) | StudyError::Parameters(_) => Class::InputOutput,
-            _ => self.passed_on().map_or(Class::Usage, Reported::class),
+            | StudyError::Interrupted => ErrorClass::Precondition,
+            StudyError::Threads(_) | StudyError::Parameters(_) => ErrorClass::InputOutput,
+            _ => self.passed_on().map_or(ErrorClass::Usage, Reported::class),
         }
     }
 

@@ -1,14 +1,14 @@
 //! Report items made by studies.
 
 use super::Subject;
-use super::explain::certified::{self, Effort, QUICK, SCENES, certified};
+use super::explain::certified::{self, PlanTestEffort, QUICK, SCENES, certified};
 use super::explain::{SECONDS, left_out};
 use super::rivals;
-use super::stability::{self, Over, stability};
-use super::trial::{Stopwatch, Trial};
+use super::stability::{self, VariedRange, stability};
+use super::trial::{Stopwatch, TrialControl};
 use super::work_precision::{self, work_precision};
-use crate::console::Failure;
-use crate::results::{Item, Journal, Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::results::{FinishedItem, Item, Journal, StudyEnvironment, StudySize};
 use stripmine_physics::method::METHODS;
 use stripmine_physics::signals;
 
@@ -22,23 +22,24 @@ pub(crate) const ITEMS: &[Item] = &[
 ];
 
 /// Tests of plans by carrying them out.
-fn plans_judged(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+fn plans_judged(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (scenes, effort) = match size {
-        Size::Quick => {
-            (QUICK, Effort { trials: [0.5; 2], limit: 0.6, estimates: 4, reference: 0.3, grid: 1.0 })
+        StudySize::Quick => {
+            (QUICK, PlanTestEffort { trials: [0.5; 2], limit: 0.6, estimates: 4, reference: 0.3, grid: 1.0 })
         }
-        Size::Full | Size::All => {
-            (SCENES, Effort { trials: SECONDS, limit: 10.0, estimates: 20, reference: 40.0, grid: 40.0 })
-        }
+        StudySize::Full | StudySize::All => (
+            SCENES,
+            PlanTestEffort { trials: SECONDS, limit: 10.0, estimates: 20, reference: 40.0, grid: 40.0 },
+        ),
     };
     Ok(certified::made(&certified(scenes, effort, lab.progress)?))
 }
 
 /// Simpler models of scenes.
-fn left_out_compared(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+fn left_out_compared(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     Ok(match size {
-        Size::Quick => left_out::compared(Some(&["shaken-box", "langevin-dense"]), 2.0, lab.progress)?,
-        Size::Full | Size::All => left_out::compared(None, 2.0 * SECONDS[0], lab.progress)?,
+        StudySize::Quick => left_out::compared(Some(&["shaken-box", "langevin-dense"]), 2.0, lab.progress)?,
+        StudySize::Full | StudySize::All => left_out::compared(None, 2.0 * SECONDS[0], lab.progress)?,
     })
 }
 
@@ -52,10 +53,10 @@ const TIMED: &[&[(&str, &str, &[&str])]] = &[
 const FLUID: &[&str] = &["law.kind=wca", "particles.count=300", "domain.sides=[20.7, 20.7]", "run.time=5"];
 
 /// Name, preset, overrides and varied parameter of a map.
-type Mapped = (&'static str, &'static str, &'static [&'static str], &'static str);
+type MappedScene = (&'static str, &'static str, &'static [&'static str], &'static str);
 
 /// Maps; in quick reports only the first of each method is used.
-const MAPPED: &[&[Mapped]] = &[
+const MAPPED: &[&[MappedScene]] = &[
     &[
         ("two-discs", "two-discs", &["run.time=3.2"], "damping"),
         ("dense-gas", "dense-gas", &["particles.count=100"], "speed"),
@@ -88,17 +89,20 @@ const MAPPED: &[&[Mapped]] = &[
 ];
 
 /// Speed against accuracy of the scenes listed.
-fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+fn speed_against_accuracy(
+    lab: &StudyEnvironment<'_>,
+    effort: StudySize,
+) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
-    let most = if effort == Size::Quick { 1 } else { usize::MAX };
+    let most = if effort == StudySize::Quick { 1 } else { usize::MAX };
     let (budget, repeats, phases) = match effort {
-        Size::Quick => (0.7, 1, 4),
-        Size::Full | Size::All => (12.0, 3, 16),
+        StudySize::Quick => (0.7, 1, 4),
+        StudySize::Full | StudySize::All => (12.0, 3, 16),
     };
-    let effort = work_precision::Effort { budget, repeats, phases, machine: None };
+    let effort = work_precision::DiagramEffort { budget, repeats, phases, machine: None };
     let shown: Vec<_> = TIMED.iter().flat_map(|of_method| of_method.iter().take(most)).collect();
     let (watch, mut scenes) = (Stopwatch::processor(), vec![]);
-    let trial = Trial { watch: &watch, stop: signals::asked() };
+    let trial = TrialControl { watch: &watch, stop: signals::asked() };
     for (at, (name, preset, overrides)) in shown.iter().enumerate() {
         let subject = subject(preset, overrides)?;
         let share = |part: f64| progress((at as f64 + part) / shown.len() as f64);
@@ -109,18 +113,20 @@ fn speed_against_accuracy(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> 
 }
 
 /// Loads a preset with overrides as typed.
-fn subject(preset: &str, overrides: &[&str]) -> Result<Subject, Failure> {
+fn subject(preset: &str, overrides: &[&str]) -> Result<Subject, CommandFailure> {
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     Ok(Subject::load(preset, &overrides, METHODS)?)
 }
 
 /// Stability maps of the scenes listed.
-fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
+fn where_it_works(lab: &StudyEnvironment<'_>, effort: StudySize) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
-    let most = if effort == Size::Quick { 1 } else { usize::MAX };
+    let most = if effort == StudySize::Quick { 1 } else { usize::MAX };
     let effort = match effort {
-        Size::Quick => stability::Effort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
-        Size::Full | Size::All => stability::Effort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 },
+        StudySize::Quick => stability::MapEffort { budget: 6.0, size: 6, seeds: 1, tolerance: 0.2 },
+        StudySize::Full | StudySize::All => {
+            stability::MapEffort { budget: 16.0, size: 16, seeds: 2, tolerance: 0.05 }
+        }
     };
     // Every scene is read before the first map takes its time.
     let mut surveys = vec![];
@@ -128,12 +134,12 @@ fn where_it_works(lab: &Lab<'_>, effort: Size) -> Result<Made, Failure> {
         MAPPED.iter().flat_map(|of_method| of_method.iter().take(most))
     {
         let subject = subject(preset, overrides)?;
-        let over = Over::of(&subject, Some(parameter), None)?;
+        let over = VariedRange::of(&subject, Some(parameter), None)?;
         surveys.push((name.to_owned(), subject, over));
     }
     let (mut maps, all) = (vec![], surveys.len() as f64);
     let watch = Stopwatch::processor();
-    let trial = Trial { watch: &watch, stop: signals::asked() };
+    let trial = TrialControl { watch: &watch, stop: signals::asked() };
     for (at, (name, subject, over)) in surveys.into_iter().enumerate() {
         let share = |part: f64| progress((at as f64 + part) / all);
         maps.push((name, stability(&subject, over, &effort, trial, &Journal::none(), &share)?));

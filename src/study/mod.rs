@@ -17,8 +17,8 @@ mod subject;
 pub(crate) mod trial;
 pub(crate) mod work_precision;
 
-pub(crate) use case::Case;
-pub(crate) use choice::Choice;
+pub(crate) use case::StudyCase;
+pub(crate) use choice::SettingChoice;
 pub(crate) use choice::TIE;
 pub(crate) use error::StudyError;
 pub(crate) use items::ITEMS;

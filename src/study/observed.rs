@@ -1,11 +1,11 @@
 //! Quantities that studies observe: indices of the quantities that a method names in its trials, looked up once.
 
 use stripmine_physics::method::observed::{UnknownName, find};
-use stripmine_physics::method::{Quantity, Trials};
+use stripmine_physics::method::{ObservedQuantity, Trials};
 
 /// A quantity that has a mean in a run.
 #[derive(Debug)]
-pub(crate) struct Watched {
+pub(crate) struct WatchedQuantity {
     pub name: &'static str,
     /// Index among the observed quantities.
     pub place: usize,
@@ -17,13 +17,13 @@ pub(crate) struct Watched {
 
 /// Indices of the terms of the energy balance.
 #[derive(Debug)]
-pub(crate) struct Balanced {
+pub(crate) struct BalanceIndices {
     error: usize,
     energies: Vec<usize>,
     inputs: Vec<usize>,
 }
 
-impl Balanced {
+impl BalanceIndices {
     /// Error of the balance (energy).
     pub(crate) fn error(&self, values: &[f64]) -> f64 {
         values[self.error]
@@ -47,16 +47,19 @@ impl Balanced {
 
 /// Quantities that studies observe of a scene.
 #[derive(Debug)]
-pub(crate) struct Observed {
+pub(crate) struct StudyQuantities {
     /// Quantities that have a mean in a run.
-    pub(crate) means: Vec<Watched>,
+    pub(crate) means: Vec<WatchedQuantity>,
     /// Energy balance, where the method observes one.
-    pub balance: Option<Balanced>,
+    pub balance: Option<BalanceIndices>,
 }
 
-impl Observed {
+impl StudyQuantities {
     /// Looks up the quantities that the trials of a method name.
-    pub(crate) fn of(trials: &Trials, quantities: &[Quantity]) -> Result<Observed, UnknownName> {
+    pub(crate) fn of(
+        trials: &Trials,
+        quantities: &[ObservedQuantity],
+    ) -> Result<StudyQuantities, UnknownName> {
         let places = |names: &[&str]| -> Result<Vec<usize>, UnknownName> {
             names.iter().map(|name| find(quantities, name)).collect()
         };
@@ -64,7 +67,7 @@ impl Observed {
             let place = find(quantities, name)?;
             let fluctuates = trials.fluctuating.contains(&name);
             let is_velocity = quantities[place].unit == "length/time";
-            Ok(Watched { name, place, fluctuates, is_velocity })
+            Ok(WatchedQuantity { name, place, fluctuates, is_velocity })
         };
         let stranger = trials.fluctuating.iter().find(|name| !trials.observables.contains(name));
         if let Some(name) = stranger {
@@ -73,38 +76,39 @@ impl Observed {
         }
         let balance = trials.balance.map(|balance| {
             let error = find(quantities, balance.error)?;
-            Ok(Balanced { error, energies: places(balance.energies)?, inputs: places(balance.inputs)? })
+            Ok(BalanceIndices { error, energies: places(balance.energies)?, inputs: places(balance.inputs)? })
         });
         let means = trials.observables.iter().map(mean).collect::<Result<_, UnknownName>>()?;
-        Ok(Observed { means, balance: balance.transpose()? })
+        Ok(StudyQuantities { means, balance: balance.transpose()? })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_physics::method::{Balance, METHODS};
+    use stripmine_physics::method::{EnergyBalanceNames, METHODS};
 
     #[test]
     fn trials_naming_unobserved_quantities_are_refused() {
         for method in METHODS {
             let Some(trials) = method.trials else { continue };
-            let observed = Observed::of(trials, method.quantities).unwrap();
+            let observed = StudyQuantities::of(trials, method.quantities).unwrap();
             assert_eq!(observed.means.len(), trials.observables.len());
             let wrong: [fn(Trials) -> Trials; 4] = [
                 |trials| Trials { observables: &["temprature"], fluctuating: &[], ..trials },
                 |trials| Trials { fluctuating: &["temprature"], ..trials },
                 |trials| {
-                    let balance = Balance { error: "temprature", energies: &[], inputs: &[] };
+                    let balance = EnergyBalanceNames { error: "temprature", energies: &[], inputs: &[] };
                     Trials { balance: Some(balance), ..trials }
                 },
                 |trials| {
-                    let balance = Balance { error: "time", energies: &["temprature"], inputs: &[] };
+                    let balance =
+                        EnergyBalanceNames { error: "time", energies: &["temprature"], inputs: &[] };
                     Trials { balance: Some(balance), ..trials }
                 },
             ];
             for wrong in wrong {
-                let error = Observed::of(&wrong(trials.clone()), method.quantities).unwrap_err();
+                let error = StudyQuantities::of(&wrong(trials.clone()), method.quantities).unwrap_err();
                 assert_eq!(error.name, "temprature");
                 assert!(!error.known.is_empty(), "{error}");
             }

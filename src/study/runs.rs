@@ -1,25 +1,25 @@
 //! Runs of a scene for a study, made now or recalled from its journal.
 
-use super::trial::{Course, RunFailure, Trial};
+use super::trial::{RunFailure, RunSampling, TrialControl};
 use super::{StudyError, Subject};
-use crate::results::{Journal, Meter};
+use crate::results::{Journal, ProgressMeter};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use stripmine_physics::method::{Prepared, Purpose, Simulation};
+use stripmine_physics::method::{Prepared, Simulation, StartPurpose};
 use stripmine_physics::signals;
 
 /// Most steps of a timing run.
 const PROBED: u64 = 4096;
 
 /// State of a study.
-pub(crate) struct Runs<'r> {
+pub(crate) struct StudyRuns<'r> {
     pub(crate) subject: &'r Subject,
-    pub(crate) trial: Trial<'r>,
+    pub(crate) trial: TrialControl<'r>,
     pub journal: &'r Journal,
-    pub(crate) meter: &'r Meter<'r>,
+    pub(crate) meter: &'r ProgressMeter<'r>,
 }
 
-impl Runs<'_> {
+impl StudyRuns<'_> {
     /// Returns the result of a run, or its failure: from the journal, if a finished run `fits`; otherwise from a new run, which is recorded.
     ///
     /// # Errors
@@ -47,8 +47,8 @@ impl Runs<'_> {
     pub(crate) fn follow(
         &self,
         scene: &Prepared,
-        purpose: Purpose,
-        course: Course,
+        purpose: StartPurpose,
+        course: RunSampling,
         look: impl FnMut(&dyn Simulation),
     ) -> Result<Box<dyn Simulation>, RunFailure> {
         self.trial.follow(scene, purpose, course, self.meter, look)

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use std::time::Instant;
-use stripmine_physics::method::throughput::{Measurement, MeasurementError, Throughput, TimedRun};
+use stripmine_physics::method::throughput::{MeasurementError, Throughput, ThroughputRequest, ThroughputRun};
 use stripmine_physics::ranks;
 
 /// Names of the whole step, of the rest outside its phases, and of the work outside steps: the start, a row of observables, all particles, and the
@@ -26,19 +26,19 @@ pub(crate) struct Scaling {
     /// True if the final state is bit-identical on all of them.
     pub(crate) same_bits: bool,
     /// Results by rising total number of threads.
-    pub(crate) by_threads: Vec<OfThreads>,
+    pub(crate) by_threads: Vec<ThreadResult>,
     /// Phases of the step, the most expensive first, then the work outside steps.
     pub phases: Vec<Phase>,
 }
 
 /// Number of ranks, and threads of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Crew {
+pub(crate) struct ThreadLayout {
     pub ranks: usize,
     pub threads: usize,
 }
 
-impl Crew {
+impl ThreadLayout {
     /// Total number of threads.
     pub(crate) fn all(self) -> usize {
         self.ranks * self.threads
@@ -47,8 +47,8 @@ impl Crew {
 
 /// Result of the bench on some ranks and threads.
 #[derive(Clone, Debug)]
-pub(crate) struct OfThreads {
-    pub(crate) crew: Crew,
+pub(crate) struct ThreadResult {
+    pub(crate) crew: ThreadLayout,
     /// Work per second: best repeat, and median.
     pub rate: [f64; 2],
     /// Best rate over that of the fewest threads.
@@ -73,8 +73,8 @@ pub(crate) struct Phase {
 /// # Errors
 /// [`MeasurementError`] if the scene is invalid or fails, or threads cannot be started.
 pub(crate) fn scaling(
-    measurement: &dyn Fn() -> Result<Measurement, MeasurementError>,
-    crews: &[Crew],
+    measurement: &dyn Fn() -> Result<ThroughputRequest, MeasurementError>,
+    crews: &[ThreadLayout],
     progress: impl Fn(f64) + Sync,
 ) -> Result<Scaling, MeasurementError> {
     let mut crews = crews.to_vec();
@@ -84,11 +84,11 @@ pub(crate) fn scaling(
     for &crew in &crews {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(crew.threads).build();
         let pool = pool.map_err(MeasurementError::Threads)?;
-        let Measurement { bench, prepared, equilibration, steps, repeats } = measurement()?;
+        let ThroughputRequest { bench, prepared, equilibration, steps, repeats } = measurement()?;
         let begun = Instant::now();
         let begin = || {
-            ranks::over(ranks::Crew::Threads(crew.ranks), || {
-                TimedRun::begin(bench, prepared, equilibration, steps)
+            ranks::over(ranks::RankBackend::Threads(crew.ranks), || {
+                ThroughputRun::begin(bench, prepared, equilibration, steps)
             })
         };
         let run = pool.install(begin)?;
@@ -110,7 +110,7 @@ pub(crate) fn scaling(
     Ok(told(&crews, measured.collect::<Result<_, MeasurementError>>()?))
 }
 
-fn told(crews: &[Crew], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
+fn told(crews: &[ThreadLayout], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
     let (results, beside): (Vec<Throughput>, Vec<[f64; 4]>) = measured.into_iter().unzip();
     let threads: Vec<usize> = crews.iter().map(|crew| crew.all()).collect();
     let first = &results[0];
@@ -137,7 +137,7 @@ fn told(crews: &[Crew], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
         let once = beside.iter().map(|it| 1e9 * it[at] / first.particles as f64);
         phases.push(phase(name, true, once.collect()));
     }
-    let by_threads = crews.iter().zip(&results).map(|(&crew, it)| OfThreads {
+    let by_threads = crews.iter().zip(&results).map(|(&crew, it)| ThreadResult {
         crew,
         rate: [it.rate, it.median_rate],
         gain: it.rate / first.rate,

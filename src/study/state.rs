@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::Prepared;
-use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles, in_space};
 
 /// A moving particle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Body {
+struct MovingParticle {
     position: [f64; 2],
     velocity: [f64; 2],
     omega: f64,
@@ -17,18 +17,18 @@ struct Body {
 
 /// The moving particles, by id.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct State(Vec<Body>);
+pub(crate) struct ParticleState(Vec<MovingParticle>);
 
-impl State {
+impl ParticleState {
     /// Extracts the state from particles of a simulation.
-    pub(super) fn of(particles: &Particles) -> State {
+    pub(super) fn of(particles: &Particles) -> ParticleState {
         let mut grains: Vec<&Particle> = particles.grains().iter().collect();
         grains.sort_by_key(|grain| grain.id);
         let body = |grain: &&Particle| {
             let Particle { omega, radius, mass, .. } = **grain;
-            Body { position: grain.place(), velocity: grain.planar_velocity(), omega, radius, mass }
+            MovingParticle { position: grain.place(), velocity: grain.planar_velocity(), omega, radius, mass }
         };
-        State(grains.iter().map(body).collect())
+        ParticleState(grains.iter().map(body).collect())
     }
 
     pub(super) fn len(&self) -> usize {
@@ -41,7 +41,7 @@ impl State {
     }
 
     /// Root mean square distance between the particles of two states, and the largest (length).
-    pub(super) fn distance(&self, other: &State, domain: &Domain) -> [f64; 2] {
+    pub(super) fn distance(&self, other: &ParticleState, domain: &Domain) -> [f64; 2] {
         let squares = self.0.iter().zip(&other.0).map(|(a, b)| {
             let way = domain.displacement(a.position, b.position);
             way.iter().map(|part| part * part).sum::<f64>()
@@ -99,7 +99,9 @@ pub(crate) fn displaced(
     by: impl Fn(usize, &Particle) -> [f64; 2],
 ) -> Particles {
     let mut moved = particles.clone();
-    for (i, grain) in moved.all_mut().iter_mut().enumerate().filter(|(_, grain)| grain.kind == Kind::Grain) {
+    for (i, grain) in
+        moved.all_mut().iter_mut().enumerate().filter(|(_, grain)| grain.kind == ParticleKind::Grain)
+    {
         let way = by(i, grain);
         let position = [0, 1].map(|axis| grain.position[axis] + way[axis]);
         grain.position = in_space(domain.wrapped(position));
@@ -122,7 +124,7 @@ mod tests {
     fn particles(positions: [[f64; 2]; 2]) -> Particles {
         let disc = |(id, position)| Particle {
             id,
-            kind: Kind::Grain,
+            kind: ParticleKind::Grain,
             position: in_space(position),
             velocity: [f64::from(id), 0.0, 0.0],
             angle: 0.0,
@@ -137,10 +139,11 @@ mod tests {
     #[test]
     fn states_are_compared_by_id_across_periodic_sides() {
         let mut domain = Domain::planar([0.0; 2], [10.0; 2], [true, false]);
-        let [a, b] = [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| State::of(&particles(at)));
+        let [a, b] =
+            [[[9.5, 1.0], [4.0, 4.0]], [[0.5, 1.0], [4.0, 4.0]]].map(|at| ParticleState::of(&particles(at)));
         assert_eq!(a.distance(&b, &domain), [0.5f64.sqrt(), 1.0]);
         // A particle at NaN has an undefined distance.
-        let lost = State::of(&particles([[9.5, 1.0], [f64::NAN, 4.0]]));
+        let lost = ParticleState::of(&particles([[9.5, 1.0], [f64::NAN, 4.0]]));
         assert!(a.distance(&lost, &domain).iter().all(|distance| distance.is_nan()));
         assert_eq!((a.momentum(), a.angular_momentum(&domain, None)), (([6.0, 0.0], 6.0), None));
         domain = Domain::planar([0.0; 2], [10.0; 2], [false; 2]);

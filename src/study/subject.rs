@@ -1,25 +1,25 @@
 //! Scene of a study of the time step, with the trials of its method.
 
-use super::observed::{Observed, Watched};
-use super::{Case, Choice, StudyError};
+use super::observed::{StudyQuantities, WatchedQuantity};
+use super::{SettingChoice, StudyCase, StudyError};
 use std::ops::Deref;
-use stripmine_physics::method::{Every, Methods, Prepared, Setting, Theory, Trials, Until};
+use stripmine_physics::method::{AxisSetting, Every, Methods, Prepared, TheoreticalOrder, Trials, Until};
 use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
 
 /// A scene under study.
 pub(crate) struct Subject {
-    case: Case,
+    case: StudyCase,
     pub trials: &'static Trials,
-    pub observed: Observed,
+    pub observed: StudyQuantities,
     /// Its own step (time).
     pub step: f64,
     pub steps: u64,
 }
 
 impl Deref for Subject {
-    type Target = Case;
+    type Target = StudyCase;
 
-    fn deref(&self) -> &Case {
+    fn deref(&self) -> &StudyCase {
         &self.case
     }
 }
@@ -30,7 +30,7 @@ impl Subject {
     /// # Errors
     /// [`StudyError`] if the scene is invalid, its method has no time step, or it ends before its first output.
     pub(crate) fn load(what: &str, overrides: &[String], methods: Methods) -> Result<Subject, StudyError> {
-        let case = Case::load(what, overrides, methods)?;
+        let case = StudyCase::load(what, overrides, methods)?;
         let nothing = StudyError::NothingToVary(case.entry.vocabulary.keys.method);
         let schedule = case.prepared.schedule;
         let (Some(trials), Until::Steps(steps), Some(step)) =
@@ -45,14 +45,14 @@ impl Subject {
         if steps < first.max(1) {
             return Err(StudyError::OverBeforeOutput { steps, first: first.max(1) });
         }
-        let observed = Observed::of(trials, case.entry.quantities)?;
+        let observed = StudyQuantities::of(trials, case.entry.quantities)?;
         Ok(Subject { case, trials, observed, step, steps })
     }
 
     /// Prepares the scene in a configuration, with a step (time) and further overrides.
     pub(crate) fn prepared_as(
         &self,
-        choice: &Choice,
+        choice: &SettingChoice,
         step: f64,
         more: &Overrides,
     ) -> Result<Prepared, SceneErrors> {
@@ -62,19 +62,19 @@ impl Subject {
     /// Prepares the scene in a configuration, even where theory forbids the step.
     pub(crate) fn prepared_at_any_step(
         &self,
-        choice: &Choice,
+        choice: &SettingChoice,
         step: f64,
         more: &Overrides,
     ) -> Result<Prepared, SceneErrors> {
         (self.trials.at_any_step)(self.values.with(&self.overrides(choice, step, more))?)
     }
 
-    fn overrides(&self, choice: &Choice, step: f64, more: &Overrides) -> Overrides {
+    fn overrides(&self, choice: &SettingChoice, step: f64, more: &Overrides) -> Overrides {
         choice.overrides().set(self.trials.step, step).and(more)
     }
 
     /// Configuration of the reference, or of the second one (1).
-    pub(crate) fn reference(&self, number: usize) -> Choice {
+    pub(crate) fn reference(&self, number: usize) -> SettingChoice {
         self.own.with(self.trials.references[number])
     }
 
@@ -84,7 +84,7 @@ impl Subject {
     }
 
     /// Theoretical order of convergence, for a setting of the axis that decides it.
-    pub(crate) fn theory(&self, setting: &Setting) -> Option<Theory> {
+    pub(crate) fn theory(&self, setting: &AxisSetting) -> Option<TheoreticalOrder> {
         (self.trials.theory)(&self.values, &self.prepared, setting)
     }
 
@@ -99,7 +99,7 @@ impl Subject {
     }
 
     /// Quantities that have a mean in a run of the scene.
-    pub(crate) fn watched(&self) -> impl Iterator<Item = &Watched> {
+    pub(crate) fn watched(&self) -> impl Iterator<Item = &WatchedQuantity> {
         let has_seeds = self.prepared.seed.is_some();
         self.observed.means.iter().filter(move |watched| has_seeds || !watched.fluctuates)
     }

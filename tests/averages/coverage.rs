@@ -3,8 +3,8 @@
 use super::{averages, ends_with, of, stripmine};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::averages::{Averages, Estimate, Outcome, Rows, joined};
-use stripmine_physics::method::{METHODS, Purpose, load};
+use stripmine_physics::averages::{AverageOutcome, AveragedRows, Estimate, RunAverages, joined};
+use stripmine_physics::method::{METHODS, StartPurpose, load};
 
 /// Reference value of a quantity.
 #[derive(Clone, Copy)]
@@ -167,7 +167,7 @@ fn seeds(count: u64) -> impl ParallelIterator<Item = u64> {
 
 impl System {
     /// Averages of a run `times` as long as the preset's.
-    fn averages(&self, seed: u64, times: f64) -> Averages {
+    fn averages(&self, seed: u64, times: f64) -> RunAverages {
         let longer = |text: &&str| match text.split_once('=') {
             Some((key @ ("run.time" | "run.events"), length)) => {
                 format!("{key}={}", times * length.parse::<f64>().unwrap())
@@ -177,8 +177,8 @@ impl System {
         let overrides = self.overrides.iter().map(longer);
         let overrides: Vec<String> = overrides.chain([format!("particles.seed={seed}")]).collect();
         let (prepared, method) = load(self.preset, &overrides, METHODS).unwrap();
-        let mut simulation = prepared.start(Purpose::Run).unwrap();
-        let mut rows = Rows::new(method.quantities);
+        let mut simulation = prepared.start(StartPurpose::Run).unwrap();
+        let mut rows = AveragedRows::new(method.quantities);
         rows.add(&simulation.row());
         let schedule = prepared.schedule;
         while !schedule.until.has_come(&simulation.clock()) {
@@ -188,18 +188,18 @@ impl System {
                 rows.add(&simulation.row());
             }
         }
-        Averages::of(&rows)
+        RunAverages::of(&rows)
     }
 }
 
 /// Outcome of one quantity.
-fn outcome(averages: &Averages, quantity: &str) -> Outcome {
+fn outcome(averages: &RunAverages, quantity: &str) -> AverageOutcome {
     averages.quantities.iter().find(|it| it.quantity == quantity).unwrap().outcome
 }
 
 /// Means among some outcomes, and the share of them whose error bar covers the truth.
-fn held(outcomes: impl Iterator<Item = Outcome>, truth: f64) -> (Vec<Estimate>, f64) {
-    let mean = |outcome| if let Outcome::Mean(estimate) = outcome { Some(estimate) } else { None };
+fn held(outcomes: impl Iterator<Item = AverageOutcome>, truth: f64) -> (Vec<Estimate>, f64) {
+    let mean = |outcome| if let AverageOutcome::Mean(estimate) = outcome { Some(estimate) } else { None };
     let found: Vec<Estimate> = outcomes.filter_map(mean).collect();
     let held = found.iter().filter(|it| (it.mean - truth).abs() <= it.bar).count();
     let share = held as f64 / found.len().max(1) as f64;
@@ -251,7 +251,7 @@ fn hold_the_truth(systems: &[System]) {
             _ => None,
         });
         let (runs, long) = rayon::join(
-            || -> Vec<Averages> { seeds(SEEDS).map(|seed| system.averages(seed, 1.0)).collect() },
+            || -> Vec<RunAverages> { seeds(SEEDS).map(|seed| system.averages(seed, 1.0)).collect() },
             || needs_long.map(|times| system.averages(FIRST_SEED + SEEDS, times)),
         );
         for &(quantity, truth) in system.truths {
@@ -259,7 +259,7 @@ fn hold_the_truth(systems: &[System]) {
             let truth = match truth {
                 Truth::Known(value) => value,
                 Truth::LongRun(_) => {
-                    let Outcome::Mean(found) = outcome(long.as_ref().unwrap(), quantity) else {
+                    let AverageOutcome::Mean(found) = outcome(long.as_ref().unwrap(), quantity) else {
                         panic!("{name}")
                     };
                     found.mean
@@ -311,12 +311,12 @@ fn joined_bars_cover_the_mean_over_energies() {
         overrides: &["particles.count=48", "run.events=5000", "run.thermo_every=0.1"],
         truths: &[],
     };
-    let runs: Vec<Averages> = seeds(4 * SEEDS).map(|seed| system.averages(seed, 1.0)).collect();
+    let runs: Vec<RunAverages> = seeds(4 * SEEDS).map(|seed| system.averages(seed, 1.0)).collect();
     let (found, _) = held(runs.iter().map(|run| outcome(run, "collision_rate")), 0.0);
     let truth = found.iter().map(|it| it.mean).sum::<f64>() / found.len() as f64;
     for count in JOINED {
         let joins = (0..SEEDS as usize).map(|first| {
-            let members: Vec<Averages> =
+            let members: Vec<RunAverages> =
                 (0..count).map(|number| runs[(first * 4 + 101 * number) % runs.len()].clone()).collect();
             outcome(&joined(&members), "collision_rate")
         });

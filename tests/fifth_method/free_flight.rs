@@ -4,22 +4,23 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
-use stripmine_physics::io::checkpoint::Column;
-use stripmine_physics::memory::{Foreseen, OfRanks};
+use stripmine_physics::io::checkpoint::CheckpointColumn;
+use stripmine_physics::memory::{MemoryForecast, RankMemory};
 use stripmine_physics::method::{
-    Axis, Bench, BenchOption, Clock, Decides, Elapsed, Entry, Fact, Failure, Kind, Observable, PerParticle,
-    Prepared, Purpose, Quantity, SMALLEST_RADIUS, Schedule, Setting, Simulation, Snapshot, Startable,
-    Stepped, SteppedState, Stepwise, Trials, Until, compress,
+    AxisSetting, Bench, BenchOption, ChoiceEffect, Clock, Elapsed, Fact, MethodEntry, MethodObservable,
+    ObservedQuantity, PerParticle, PhysicsFailure, Prepared, QuantityKind, SMALLEST_RADIUS, Schedule,
+    SettingAxis, Simulation, Snapshot, StartPurpose, Startable, Stepped, SteppedState, Stepwise, Trials,
+    Until, compress,
 };
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
-    self, Binding, DISC_RIVALS, DISCS, DT, DURATION, HEADING, KeySet, OUTPUT, Output, Overrides,
-    PLANAR_DOMAIN, Preset, Read, Run, STEP, STEPPED_RUN, SceneErrors, Start, TARGETED, Values, Vocabulary,
-    WallMotion, Write, bind_heading, disagreements, too_many_steps,
+    self, Binding, DISC_RIVALS, DISCS, DT, DURATION, DiscStart, HEADING, KeySet, OUTPUT, Output, Overrides,
+    PLANAR_DOMAIN, Preset, ReadBinding, RunKeys, STEP, STEPPED_RUN, SceneErrors, SceneValues, TARGETED,
+    Vocabulary, WallMotion, Write, bind_heading, disagreements, too_many_steps,
 };
-use stripmine_physics::start::{Stated, make, outside};
+use stripmine_physics::start::{StatedStart, make, outside};
 
-pub static ENTRY: Entry = Entry {
+pub static ENTRY: MethodEntry = MethodEntry {
     vocabulary: &VOCABULARY,
     source: "this test",
     doc: "discs that do not meet",
@@ -43,10 +44,10 @@ pub static ENTRY: Entry = Entry {
         compared: &["kinetic"],
         at_end: &[],
     }],
-    axes: &[Axis {
+    axes: &[SettingAxis {
         name: "integrator",
-        decides: Decides::Order,
-        settings: &[Setting { name: "drift", overrides: Overrides::new }],
+        decides: ChoiceEffect::Order,
+        settings: &[AxisSetting { name: "drift", overrides: Overrides::new }],
         own: |_| Some("drift".to_owned()),
     }],
     twins: &[],
@@ -89,19 +90,19 @@ static VOCABULARY: Vocabulary = Vocabulary {
     renamed: &[],
 };
 
-const QUANTITIES: &[Quantity] = &[
-    Quantity { name: "time", unit: "time", kind: Kind::Time, doc: "The time." },
-    Quantity { name: "kinetic", unit: "energy", kind: Kind::Instant, doc: "Kinetic energy." },
+const QUANTITIES: &[ObservedQuantity] = &[
+    ObservedQuantity { name: "time", unit: "time", kind: QuantityKind::Time, doc: "The time." },
+    ObservedQuantity { name: "kinetic", unit: "energy", kind: QuantityKind::Instant, doc: "Kinetic energy." },
 ];
 
 /// A scene of discs in free flight.
 #[derive(Clone, Default)]
 struct Flight {
     units: String,
-    domain: scene::Domain,
-    start: Start,
+    domain: scene::SceneDomain,
+    start: DiscStart,
     dt: f64,
-    run: Run,
+    run: RunKeys,
     output: Output,
     made: Particles,
     bounds: Option<Domain>,
@@ -117,12 +118,12 @@ impl Flight {
         self.output.bind(binding);
     }
 
-    fn prepare(values: Values) -> Result<Flight, SceneErrors> {
-        let (mut flight, mut read) = (Flight::default(), Read::new(&values));
+    fn prepare(values: SceneValues) -> Result<Flight, SceneErrors> {
+        let (mut flight, mut read) = (Flight::default(), ReadBinding::new(&values));
         flight.bind(&mut read);
         read.done()?;
         let (domain, start) = (&flight.domain, &flight.start);
-        let stated = Stated { values: &values, domain, start, walls: WallMotion::Fixed, compress };
+        let stated = StatedStart { values: &values, domain, start, walls: WallMotion::Fixed, compress };
         let made = make(&stated)?;
         SceneErrors::none_of(outside(&stated, &made.domain, &made.particles))?;
         Ok(Flight { bounds: Some(made.domain), made: made.particles, ..flight })
@@ -147,12 +148,12 @@ impl Flight {
             left_out: vec![],
             step_limits: vec![],
             expected_error: None,
-            memory: Foreseen {
+            memory: MemoryForecast {
                 needed: 1,
                 available: None,
                 what: "a few discs".to_owned(),
                 remedy: "take fewer",
-                ranks: OfRanks::default(),
+                ranks: RankMemory::default(),
             },
             settings: Map::new(),
             event_columns: None,
@@ -170,7 +171,7 @@ impl Startable for Flight {
         &self.made
     }
 
-    fn start(&self, _: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+    fn start(&self, _: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         let (domain, discs) = (self.domain(), self.made.clone());
         Ok(Box::new(Stepped::new(Flying { domain, elapsed: Elapsed::of_steps(self.dt), discs }, Free)))
     }
@@ -202,9 +203,10 @@ impl SteppedState for Flying {
         self
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
-        let column =
-            |axis: usize| Column::F64(self.discs.all().iter().map(|disc| disc.position[axis]).collect());
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
+        let column = |axis: usize| {
+            CheckpointColumn::F64(self.discs.all().iter().map(|disc| disc.position[axis]).collect())
+        };
         ["x", "y"].iter().zip([0, 1]).map(|(name, axis)| ((*name).to_owned(), column(axis))).collect()
     }
 }
@@ -216,12 +218,12 @@ impl Stepwise for Free {
     type State = Flying;
     /// Time and kinetic energy.
     type Seen = [f64; 2];
-    const OBSERVABLES: &'static [Observable<[f64; 2]>] = &[
-        Observable { quantity: QUANTITIES[0], of: |seen| seen[0] },
-        Observable { quantity: QUANTITIES[1], of: |seen| seen[1] },
+    const OBSERVABLES: &'static [MethodObservable<[f64; 2]>] = &[
+        MethodObservable { quantity: QUANTITIES[0], of: |seen| seen[0] },
+        MethodObservable { quantity: QUANTITIES[1], of: |seen| seen[1] },
     ];
 
-    fn step(run: &mut Stepped<Self>, _: &AtomicBool) -> Result<bool, Failure> {
+    fn step(run: &mut Stepped<Self>, _: &AtomicBool) -> Result<bool, PhysicsFailure> {
         let Flying { domain, elapsed, discs } = &mut run.state;
         for disc in discs.all_mut() {
             let moved = [0, 1, 2].map(|axis| disc.position[axis] + elapsed.dt * disc.velocity[axis]);

@@ -1,8 +1,8 @@
 //! Every numeric key of every method with values at the ends of the number format: the scene is refused, or its run ends.
 
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::method::{Clock, Every, METHODS, Prepared, Purpose, Simulation, Until, load};
-use stripmine_physics::scene::{Key, Kind};
+use stripmine_physics::method::{Clock, Every, METHODS, Prepared, Simulation, StartPurpose, Until, load};
+use stripmine_physics::scene::{Key, KeyValueKind};
 
 /// Small scenes of every method.
 const SCENES: &[(&str, &[&str])] = &[
@@ -26,15 +26,17 @@ const MEMORY: u64 = 1 << 30;
 
 fn texts(key: &Key) -> Vec<String> {
     match key.kind {
-        Kind::Number(_) | Kind::Whole(..) | Kind::OneOf(_) => NUMBERS.map(str::to_owned).to_vec(),
-        Kind::Pair(_) => NUMBERS.iter().map(|number| format!("[{number}, {number}]")).collect(),
+        KeyValueKind::Number(_) | KeyValueKind::Whole(..) | KeyValueKind::OneOf(_) => {
+            NUMBERS.map(str::to_owned).to_vec()
+        }
+        KeyValueKind::Pair(_) => NUMBERS.iter().map(|number| format!("[{number}, {number}]")).collect(),
         _ => vec![],
     }
 }
 
 /// Runs a scene for two rows; returns true if it completed both.
 fn two_rows(prepared: &Prepared, what: &str) -> bool {
-    let Ok(mut simulation) = prepared.start(Purpose::Run) else { return false };
+    let Ok(mut simulation) = prepared.start(StartPurpose::Run) else { return false };
     let takes = |simulation: &mut dyn Simulation| {
         let clock = simulation.clock();
         let until =

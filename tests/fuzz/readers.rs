@@ -6,12 +6,12 @@ use std::io::Cursor;
 use stripmine::model::host::{HostModel, default_model};
 use stripmine::model::machine::MachineModel;
 use stripmine::model::machines::names;
-use stripmine_physics::io::checkpoint::{Checkpoint, Column, Counter};
-use stripmine_physics::io::extxyz::{self, Frames};
+use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointColumn, CheckpointCounter};
+use stripmine_physics::io::extxyz::{self, XyzFrames};
 use stripmine_physics::io::gsd;
 use stripmine_physics::io::run_moment::RunHeader;
 use stripmine_physics::io::sink::Sink;
-use stripmine_physics::method::lattice_md::{Document, ENTRY};
+use stripmine_physics::method::lattice_md::{ENTRY, GranularDocument};
 
 const MEGABYTE: u64 = 1 << 20;
 
@@ -22,9 +22,9 @@ pub(crate) fn scenes() -> Vec<Vec<u8>> {
 
 fn read_scene(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
-    if let Ok(document) = Document::parse("scene.toml", &text, &[]) {
+    if let Ok(document) = GranularDocument::parse("scene.toml", &text, &[]) {
         let written = document.scene.to_toml();
-        let again = Document::parse("scene.toml", &written, &[]).unwrap();
+        let again = GranularDocument::parse("scene.toml", &written, &[]).unwrap();
         assert_eq!(again.scene, document.scene, "{written}");
     }
 }
@@ -41,7 +41,7 @@ fn overrides_are_read_or_refused() {
         ENTRY.vocabulary.keys.keys().map(|key| format!("{}=[1.0, 2.0]", key.path()).into_bytes()).collect();
     fuzz(&seeds, cases(3000), 16 * MEGABYTE, |bytes| {
         let set = String::from_utf8_lossy(bytes).into_owned();
-        if let Ok(document) = Document::load("two-discs", &[set]) {
+        if let Ok(document) = GranularDocument::load("two-discs", &[set]) {
             document.scene.to_toml();
         }
     });
@@ -56,12 +56,12 @@ fn frames() -> Vec<Vec<u8>> {
 #[test]
 fn frames_are_read_or_refused() {
     fuzz(&frames(), cases(5000), 64 * MEGABYTE, |bytes| {
-        for frame in Frames::new(Cursor::new(bytes), "fuzz.xyz").flatten() {
+        for frame in XyzFrames::new(Cursor::new(bytes), "fuzz.xyz").flatten() {
             let mut written = Vec::new();
             extxyz::write(&frame, &mut written).unwrap();
-            let again = Frames::new(Cursor::new(written), "again.xyz").next().unwrap().unwrap();
+            let again = XyzFrames::new(Cursor::new(written), "again.xyz").next().unwrap().unwrap();
             // Raised ids are written as they are now.
-            assert_eq!(again, extxyz::Frame { has_raised_ids: false, ..frame });
+            assert_eq!(again, extxyz::ParticleFrame { has_raised_ids: false, ..frame });
         }
     });
 }
@@ -71,18 +71,18 @@ fn frames_are_read_or_refused() {
 fn trajectories_are_read_or_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("seed.gsd");
-    let start = Frames::new(Cursor::new(frames().swap_remove(0)), "two.xyz").next().unwrap().unwrap();
+    let start = XyzFrames::new(Cursor::new(frames().swap_remove(0)), "two.xyz").next().unwrap().unwrap();
     let header = RunHeader { columns: vec!["energy"], logged: vec![0], ..RunHeader::default() };
-    let mut file = gsd::Writer::begin(path.clone(), &header).unwrap();
+    let mut file = gsd::GsdWriter::begin(path.clone(), &header).unwrap();
     for step in 0..3 {
-        let frame = extxyz::Frame { step, ..start.clone() };
+        let frame = extxyz::ParticleFrame { step, ..start.clone() };
         file.write(gsd::LoggedFrame { frame: frame.into(), images: vec![], values: vec![0.5] }).unwrap();
     }
     let seed = std::fs::read(&path).unwrap();
     let damaged = folder.path().join("fuzz.gsd");
     fuzz(&[seed], cases(2000), 4 * MEGABYTE, |bytes| {
         std::fs::write(&damaged, bytes).unwrap();
-        match gsd::Frames::open(&damaged) {
+        match gsd::GsdFrames::open(&damaged) {
             Ok(frames) => assert!(frames.flatten().all(|frame| frame.time.is_finite())),
             Err(error) => assert!(error.to_string().contains("fuzz.gsd: ")),
         }
@@ -134,12 +134,16 @@ fn checkpoint() -> Vec<u8> {
         time: 0.5,
         scene: "format = 1\n".to_owned(),
         origin: [("version".to_owned(), "0.1.0".to_owned())].into(),
-        counters: [("a".to_owned(), Counter::Count(3)), ("b".to_owned(), Counter::Sum(0.25))].into(),
+        counters: [
+            ("a".to_owned(), CheckpointCounter::Count(3)),
+            ("b".to_owned(), CheckpointCounter::Sum(0.25)),
+        ]
+        .into(),
         columns: vec![
-            ("x".to_owned(), Column::F64(vec![1.0, 2.0])),
-            ("y".to_owned(), Column::F32(vec![1.0])),
-            ("z".to_owned(), Column::U32(vec![7, 8, 9])),
-            ("w".to_owned(), Column::U64(vec![])),
+            ("x".to_owned(), CheckpointColumn::F64(vec![1.0, 2.0])),
+            ("y".to_owned(), CheckpointColumn::F32(vec![1.0])),
+            ("z".to_owned(), CheckpointColumn::U32(vec![7, 8, 9])),
+            ("w".to_owned(), CheckpointColumn::U64(vec![])),
         ],
     };
     let folder = tempfile::tempdir().unwrap();

@@ -4,28 +4,28 @@ use crate::mutation::gentle;
 use crate::readers::scenes;
 use crate::{cases, fuzz_with};
 use std::cell::Cell;
-use stripmine_physics::method::lattice_md::{Document, Scene, assemble, memory};
-use stripmine_physics::scene::{Amount, Grains, Lining, Start};
+use stripmine_physics::method::lattice_md::{GranularDocument, GranularScene, assemble, memory};
+use stripmine_physics::scene::{Amount, DiscStart, GeneratedDiscs, WallLining};
 
 /// True if a scene has few discs and few cells, so that a case takes no noticeable time.
-fn is_small(scene: &Scene) -> bool {
+fn is_small(scene: &GranularScene) -> bool {
     const MOST: f64 = 300.0;
     let sides = scene.domain.sides.unwrap_or([1.0; 2]);
-    let few = |amount: &Amount, grains: &Grains| match amount {
+    let few = |amount: &Amount, grains: &GeneratedDiscs| match amount {
         Amount::Count(count) => (*count as f64) <= MOST,
         Amount::PackingFraction(fraction) => {
             fraction * sides[0] * sides[1] / (grains.radius * grains.radius * 3.0) <= MOST
         }
     };
-    let lined = |lining: &Lining| sides[0] / lining.spacing <= MOST;
+    let lined = |lining: &WallLining| sides[0] / lining.spacing <= MOST;
     match &scene.start {
-        Start::File(_) | Start::List(_) => true,
-        Start::Hexagonal { count, .. } => *count as f64 <= MOST,
-        Start::Mesh { amount, grains, .. } => few(amount, grains),
-        Start::Random { amount, grains } => few(amount, grains),
+        DiscStart::File(_) | DiscStart::List(_) => true,
+        DiscStart::Hexagonal { count, .. } => *count as f64 <= MOST,
+        DiscStart::Mesh { amount, grains, .. } => few(amount, grains),
+        DiscStart::Random { amount, grains } => few(amount, grains),
         // Compression takes too long.
-        Start::Compressed { .. } => false,
-        Start::Pipe { amount, grains, lining, .. } | Start::Box { amount, grains, lining, .. } => {
+        DiscStart::Compressed { .. } => false,
+        DiscStart::Pipe { amount, grains, lining, .. } | DiscStart::Box { amount, grains, lining, .. } => {
             few(amount, grains) && lined(lining)
         }
     }
@@ -34,7 +34,7 @@ fn is_small(scene: &Scene) -> bool {
 /// Runs the text if it is a valid scene; returns true if it completed all its steps.
 fn run(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
-    let Ok(document) = Document::parse("scene.toml", &text, &[]) else { return false };
+    let Ok(document) = GranularDocument::parse("scene.toml", &text, &[]) else { return false };
     if !is_small(&document.scene) {
         return false;
     }
@@ -68,7 +68,7 @@ fn small_scenes() -> Vec<Vec<u8>> {
         ] {
             let count = if preset == "two-discs" { "run.steps=3" } else { "particles.count=30" };
             let sets: Vec<String> = method.iter().chain(&[count]).map(|set| (*set).to_owned()).collect();
-            scenes.push(Document::load(preset, &sets).unwrap().scene.to_toml().into_bytes());
+            scenes.push(GranularDocument::load(preset, &sets).unwrap().scene.to_toml().into_bytes());
         }
     }
     scenes

@@ -3,8 +3,8 @@
 //! A checkpoint with valid checksums may still contain anything, and a simulation takes its whole state from it.
 
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::io::checkpoint::{Column, Counter};
-use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
+use stripmine_physics::io::checkpoint::{CheckpointColumn, CheckpointCounter};
+use stripmine_physics::method::{Clock, METHODS, Prepared, Simulation, Snapshot, StartPurpose, Until, load};
 
 /// Small scenes of every method and every engine: preset and overrides.
 const SCENES: &[(&str, &[&str])] = &[
@@ -42,15 +42,19 @@ fn advance(simulation: &mut dyn Simulation) -> bool {
 }
 
 fn started(prepared: &Prepared) -> Box<dyn Simulation> {
-    prepared.start(Purpose::Run).unwrap()
+    prepared.start(StartPurpose::Run).unwrap()
 }
 
 const REALS: [f64; 9] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 5e-324, 1e9, -1.0, 0.5];
 const WHOLES: [u64; 5] = [u64::MAX, u64::MAX / 2, 1 << 53, u32::MAX as u64, 0];
 
 /// Replacements of a column: one or all values changed, fewer values, more, none, or another type.
-fn columns(column: &Column) -> Vec<Column> {
-    fn of<T: Copy>(values: &[T], hostile: &[T], made: impl Fn(Vec<T>) -> Column) -> Vec<Column> {
+fn columns(column: &CheckpointColumn) -> Vec<CheckpointColumn> {
+    fn of<T: Copy>(
+        values: &[T],
+        hostile: &[T],
+        made: impl Fn(Vec<T>) -> CheckpointColumn,
+    ) -> Vec<CheckpointColumn> {
         let mut all = vec![made(vec![]), made(values[..values.len() / 2].to_vec())];
         all.push(made(values.iter().chain(values).copied().collect()));
         for &value in hostile {
@@ -62,20 +66,20 @@ fn columns(column: &Column) -> Vec<Column> {
         all
     }
     let mut all = match column {
-        Column::F64(values) => of(values, &REALS, Column::F64),
-        Column::F32(values) => of(values, &REALS.map(|x| x as f32), Column::F32),
-        Column::U32(values) => of(values, &WHOLES.map(|x| x as u32), Column::U32),
-        Column::U64(values) => of(values, &WHOLES, Column::U64),
+        CheckpointColumn::F64(values) => of(values, &REALS, CheckpointColumn::F64),
+        CheckpointColumn::F32(values) => of(values, &REALS.map(|x| x as f32), CheckpointColumn::F32),
+        CheckpointColumn::U32(values) => of(values, &WHOLES.map(|x| x as u32), CheckpointColumn::U32),
+        CheckpointColumn::U64(values) => of(values, &WHOLES, CheckpointColumn::U64),
     };
     all.push(match column {
-        Column::U64(values) => Column::U32(vec![7; values.len()]),
-        other => Column::U64(vec![7; other.len()]),
+        CheckpointColumn::U64(values) => CheckpointColumn::U32(vec![7; values.len()]),
+        other => CheckpointColumn::U64(vec![7; other.len()]),
     });
     all
 }
 
-fn counters() -> Vec<Counter> {
-    REALS.map(Counter::Sum).into_iter().chain(WHOLES.map(Counter::Count)).collect()
+fn counters() -> Vec<CheckpointCounter> {
+    REALS.map(CheckpointCounter::Sum).into_iter().chain(WHOLES.map(CheckpointCounter::Count)).collect()
 }
 
 fn clocks(clock: Clock) -> Vec<Clock> {

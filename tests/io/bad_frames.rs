@@ -2,7 +2,7 @@
 
 use crate::{frame, text};
 use std::fs;
-use stripmine_physics::io::extxyz::{Frames, ReadError, Which, read};
+use stripmine_physics::io::extxyz::{FrameChoice, XyzFrames, XyzReadError, read};
 
 const LATTICE: &str = r#"Lattice="4 0 0 0 5 0 0 0 1""#;
 const PROPERTIES: &str = "Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
@@ -178,7 +178,7 @@ fn write_out(text: &str) -> String {
     text.replace("LATTICE", LATTICE).replace("PROPERTIES", PROPERTIES).replace("ROW", ROW)
 }
 
-fn error_of(bytes: &[u8], which: Which) -> ReadError {
+fn error_of(bytes: &[u8], which: FrameChoice) -> XyzReadError {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.xyz");
     fs::write(&path, bytes).unwrap();
@@ -193,7 +193,7 @@ fn every_mistake_is_reported_with_its_location() {
     for (bad, expected) in CASES {
         let expected = expected.replace("ROW", ROW).replace("ADD", ADD).replace("FMT", FMT);
         let bad = write_out(bad);
-        let error = error_of(bad.as_bytes(), Which::Last);
+        let error = error_of(bad.as_bytes(), FrameChoice::Last);
         assert_eq!(error.to_string(), expected, "\n{bad}");
         assert!(error.system().is_none());
     }
@@ -202,7 +202,7 @@ fn every_mistake_is_reported_with_its_location() {
 /// The first frame is valid, but the line after it does not begin a frame.
 #[test]
 fn too_small_counts_are_found_in_first_frames() {
-    let error = error_of(write_out("1\nLATTICE PROPERTIES\nROW\nROW\n").as_bytes(), Which::First);
+    let error = error_of(write_out("1\nLATTICE PROPERTIES\nROW\nROW\n").as_bytes(), FrameChoice::First);
     assert!(error.to_string().contains("bad.xyz:4: expected the number of discs"), "{error}");
 }
 
@@ -214,7 +214,7 @@ fn invalid_utf8_is_refused_with_its_location() {
         let at = whole.find(word).unwrap();
         let mut bytes = whole.clone().into_bytes();
         bytes[at] = 0xff;
-        let error = error_of(&bytes, Which::Last);
+        let error = error_of(&bytes, FrameChoice::Last);
         assert_eq!(error.to_string(), format!("bad.xyz:{line}:{column}: not UTF-8 text"));
     }
 }
@@ -222,7 +222,8 @@ fn invalid_utf8_is_refused_with_its_location() {
 #[test]
 fn only_the_first_mistakes_are_listed() {
     let rows = (1..=100).map(|id| format!("Si 1 2 0 {id} 0 0 0 -{id} 1 0 0 0\n")).collect::<String>();
-    let error = error_of(write_out(&format!("100\nLATTICE PROPERTIES\n{rows}")).as_bytes(), Which::First);
+    let error =
+        error_of(write_out(&format!("100\nLATTICE PROPERTIES\n{rows}")).as_bytes(), FrameChoice::First);
     assert_eq!((error.mistakes.len(), error.more), (20, 80));
     let lines: Vec<usize> = error.mistakes.iter().filter_map(|mistake| mistake.line).collect();
     assert_eq!(lines, (3..23).collect::<Vec<_>>());
@@ -232,14 +233,14 @@ fn only_the_first_mistakes_are_listed() {
 #[test]
 fn invalid_frame_ends_the_sequence() {
     let text = [text(&frame(0)), text(&frame(1)).replace(" 0.5 ", " -0.5 "), text(&frame(2))].concat();
-    let frames: Vec<_> = Frames::new(text.as_bytes(), "text").collect();
+    let frames: Vec<_> = XyzFrames::new(text.as_bytes(), "text").collect();
     assert!(frames.len() == 2 && frames[0].is_ok());
     assert!(frames[1].as_ref().unwrap_err().to_string().starts_with("text:7:"));
 }
 
 #[test]
 fn missing_file_is_a_system_error() {
-    let error = read("/no/such/file.xyz", Which::Last).unwrap_err();
+    let error = read("/no/such/file.xyz", FrameChoice::Last).unwrap_err();
     assert_eq!(error.system().unwrap().kind(), std::io::ErrorKind::NotFound);
     assert!(error.to_string().starts_with("/no/such/file.xyz: cannot be read: "));
 }
@@ -255,6 +256,6 @@ fn binary_formats_are_named() {
         (b"CDF\x01\0\0", "a NetCDF file"),
         (b"\xff\xfe1\x000\0", "text in UTF-16"),
     ] {
-        assert_eq!(error_of(bytes, Which::Last).to_string(), format!("bad.xyz: this is {name}; {FMT}"));
+        assert_eq!(error_of(bytes, FrameChoice::Last).to_string(), format!("bad.xyz: this is {name}; {FMT}"));
     }
 }

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::Path;
 use stripmine_physics::io::checkpoint::{
-    Checkpoint, Column, Counter, Kept, Latest, NAME, WriteError, previous, read_latest,
+    Checkpoint, CheckpointColumn, CheckpointCounter, LatestCheckpoint, NAME, OlderCheckpoint, WriteError,
+    previous, read_latest,
 };
 
 /// A small checkpoint with every kind of content.
@@ -11,13 +12,14 @@ pub fn checkpoint(step: u64) -> Checkpoint {
     let texts = |pairs: &[(&str, &str)]| {
         pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
     };
-    let counters = [("contacts", Counter::Count(u64::MAX)), ("energy", Counter::Sum(-0.1))];
+    let counters =
+        [("contacts", CheckpointCounter::Count(u64::MAX)), ("energy", CheckpointCounter::Sum(-0.1))];
     let columns = [
-        ("x", Column::F64(vec![0.1, -0.0, f64::MAX])),
-        ("x_cell", Column::F32(vec![1e-45, f32::NEG_INFINITY])),
-        ("id", Column::U32(vec![1, u32::MAX])),
-        ("collisions", Column::U64(vec![7])),
-        ("none", Column::F64(vec![])),
+        ("x", CheckpointColumn::F64(vec![0.1, -0.0, f64::MAX])),
+        ("x_cell", CheckpointColumn::F32(vec![1e-45, f32::NEG_INFINITY])),
+        ("id", CheckpointColumn::U32(vec![1, u32::MAX])),
+        ("collisions", CheckpointColumn::U64(vec![7])),
+        ("none", CheckpointColumn::F64(vec![])),
     ];
     Checkpoint {
         step,
@@ -54,7 +56,7 @@ fn checkpoint_contents_are_read_back() {
         assert_eq!(Checkpoint::read(&path).unwrap(), checkpoint);
     }
     let read = Checkpoint::read(&path).unwrap();
-    assert_eq!(read.column("id"), Some(&Column::U32(vec![1, u32::MAX])));
+    assert_eq!(read.column("id"), Some(&CheckpointColumn::U32(vec![1, u32::MAX])));
     assert!(read.column("y").is_none());
 }
 
@@ -66,11 +68,11 @@ fn float_bits_are_read_back() {
     let many: Vec<f64> = (0..20_000).map(|i| f64::from(i).sqrt()).collect();
     let written = Checkpoint {
         time: f64::from_bits(wide[0]),
-        counters: [("sum".to_owned(), Counter::Sum(f64::from_bits(wide[1])))].into(),
+        counters: [("sum".to_owned(), CheckpointCounter::Sum(f64::from_bits(wide[1])))].into(),
         columns: vec![
-            ("wide".to_owned(), Column::F64(wide.map(f64::from_bits).to_vec())),
-            ("narrow".to_owned(), Column::F32(narrow.map(f32::from_bits).to_vec())),
-            ("many".to_owned(), Column::F64(many.clone())),
+            ("wide".to_owned(), CheckpointColumn::F64(wide.map(f64::from_bits).to_vec())),
+            ("narrow".to_owned(), CheckpointColumn::F32(narrow.map(f32::from_bits).to_vec())),
+            ("many".to_owned(), CheckpointColumn::F64(many.clone())),
         ],
         ..checkpoint(0)
     };
@@ -79,12 +81,12 @@ fn float_bits_are_read_back() {
     written.write_atomically(&path).unwrap();
     let read = Checkpoint::read(&path).unwrap();
     assert_eq!(read.time.to_bits(), wide[0]);
-    assert!(matches!(read.counters["sum"], Counter::Sum(sum) if sum.to_bits() == wide[1]));
-    let Some(Column::F64(values)) = read.column("wide") else { panic!("wide") };
+    assert!(matches!(read.counters["sum"], CheckpointCounter::Sum(sum) if sum.to_bits() == wide[1]));
+    let Some(CheckpointColumn::F64(values)) = read.column("wide") else { panic!("wide") };
     assert_eq!(values.iter().map(|value| value.to_bits()).collect::<Vec<_>>(), wide);
-    let Some(Column::F32(values)) = read.column("narrow") else { panic!("narrow") };
+    let Some(CheckpointColumn::F32(values)) = read.column("narrow") else { panic!("narrow") };
     assert_eq!(values.iter().map(|value| value.to_bits()).collect::<Vec<_>>(), narrow);
-    assert_eq!(read.column("many"), Some(&Column::F64(many)));
+    assert_eq!(read.column("many"), Some(&CheckpointColumn::F64(many)));
 }
 
 #[test]
@@ -158,10 +160,10 @@ fn newest_existing_checkpoint_is_read() {
     assert_eq!(read_latest(folder.path()).unwrap(), None);
     checkpoint(1).write_atomically(&path).unwrap();
     checkpoint(2).write_atomically(&path).unwrap();
-    let latest = Latest { file: path.clone(), checkpoint: checkpoint(2) };
+    let latest = LatestCheckpoint { file: path.clone(), checkpoint: checkpoint(2) };
     assert_eq!(read_latest(folder.path()).unwrap(), Some(latest));
     fs::remove_file(&path).unwrap();
-    let latest = Latest { file: previous(&path), checkpoint: checkpoint(1) };
+    let latest = LatestCheckpoint { file: previous(&path), checkpoint: checkpoint(1) };
     assert_eq!(read_latest(folder.path()).unwrap(), Some(latest));
 }
 
@@ -178,7 +180,7 @@ fn corrupt_checkpoint_error_offers_the_previous_one() {
     fs::write(&path, flipped).unwrap();
 
     let error = read_latest(folder.path()).unwrap_err();
-    assert!(error.is_corrupt() && error.kept == Kept::Whole { file: older.clone(), step: 1 });
+    assert!(error.is_corrupt() && error.kept == OlderCheckpoint::Whole { file: older.clone(), step: 1 });
     let expected = format!(
         "checkpoint {newest}: is corrupt: the checksum of column 5 of 5 is wrong (at byte {})
   kept: the older checkpoint, {}, of step 1, is valid
@@ -190,11 +192,11 @@ fn corrupt_checkpoint_error_offers_the_previous_one() {
 
     fs::write(&older, "no checkpoint").unwrap();
     let error = read_latest(folder.path()).unwrap_err();
-    assert_eq!(error.kept, Kept::Unusable { file: older.clone() });
+    assert_eq!(error.kept, OlderCheckpoint::Unusable { file: older.clone() });
     assert!(error.to_string().ends_with("but it cannot be used either\n  help: start the run again"));
     fs::remove_file(&older).unwrap();
     let error = read_latest(folder.path()).unwrap_err();
-    assert_eq!(error.kept, Kept::Nothing);
+    assert_eq!(error.kept, OlderCheckpoint::Nothing);
     assert!(error.to_string().ends_with("no older checkpoint is kept beside it; start the run again"));
     let error = Checkpoint::read(folder.path().join("missing")).unwrap_err();
     assert!(!error.is_corrupt(), "{error}");

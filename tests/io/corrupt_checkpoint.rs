@@ -3,7 +3,7 @@
 use crate::Random;
 use crate::checkpoint::{bytes, checkpoint};
 use std::fs;
-use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointError, Fault};
+use stripmine_physics::io::checkpoint::{Checkpoint, CheckpointError, CheckpointFault};
 
 /// Reads bytes as a checkpoint file.
 struct Reader(tempfile::TempDir);
@@ -65,16 +65,16 @@ fn every_flipped_bit_is_refused() {
         flipped[bit / 8] ^= 1 << (bit % 8);
         let error = reader.error(&flipped);
         match bit / 8 {
-            0..8 => assert!(matches!(error.fault, Fault::Magic), "bit {bit}: {error}"),
+            0..8 => assert!(matches!(error.fault, CheckpointFault::Magic), "bit {bit}: {error}"),
             8..28 => {
                 let part = "the header".to_owned();
                 assert!(
-                    matches!(error.fault, Fault::Checksum { part: ref p } if *p == part),
+                    matches!(error.fault, CheckpointFault::Checksum { part: ref p } if *p == part),
                     "bit {bit}: {error}"
                 );
             }
             _ => assert!(
-                matches!(error.fault, Fault::Checksum { .. } | Fault::Length { .. }),
+                matches!(error.fault, CheckpointFault::Checksum { .. } | CheckpointFault::Length { .. }),
                 "bit {bit}: {error}"
             ),
         }
@@ -87,7 +87,7 @@ fn every_truncation_is_refused() {
     for length in 0..whole.len() {
         let error = reader.error(&whole[..length]);
         let full = (length >= HEADER).then_some(whole.len() as u64);
-        let right = matches!(error.fault, Fault::Truncated { found, promised }
+        let right = matches!(error.fault, CheckpointFault::Truncated { found, promised }
             if found == length as u64 && promised == full);
         assert!(right && error.offset == Some(length as u64), "{length}: {error}");
     }
@@ -100,7 +100,10 @@ fn bytes_after_the_end_are_refused() {
     for extra in 1..20 {
         bytes.push(0);
         let error = reader.error(&bytes);
-        assert!(matches!(error.fault, Fault::Trailing { extra: found } if found == extra), "{error}");
+        assert!(
+            matches!(error.fault, CheckpointFault::Trailing { extra: found } if found == extra),
+            "{error}"
+        );
         assert_eq!(error.offset, Some(length));
     }
 }
@@ -109,10 +112,10 @@ fn bytes_after_the_end_are_refused() {
 fn foreign_files_and_other_versions_are_distinguished() {
     let reader = Reader::new();
     for other in [&b"step,time\n"[..], &[0; 100], b"\x93NUMPY\x01\x00 and so on, long enough for a header"] {
-        assert!(matches!(reader.error(other).fault, Fault::Magic));
+        assert!(matches!(reader.error(other).fault, CheckpointFault::Magic));
     }
     let error = reader.error(&forged(8, &2u32.to_le_bytes()));
-    assert!(matches!(error.fault, Fault::Version { found: 2 }));
+    assert!(matches!(error.fault, CheckpointFault::Version { found: 2 }));
     assert_eq!(error.offset, Some(8));
     assert!(error.to_string().contains("has format version 2, but this program reads version 1 (at byte 8)"));
 }
@@ -129,11 +132,13 @@ fn absurd_lengths_are_refused() {
         let origin = state + 12 + 16 + 8 + checkpoint(3).scene.len();
         for at in [state + 4, state + 12 + 16, origin, column + 12, column + 12 + 8 + 1 + 1] {
             let error = reader.error(&forged(at, &new));
-            assert!(matches!(error.fault, Fault::Length { .. }), "{at}: {error}");
+            assert!(matches!(error.fault, CheckpointFault::Length { .. }), "{at}: {error}");
         }
         // Length of the file.
         let error = reader.error(&forged(16, &(absurd + 1).to_le_bytes()));
-        assert!(matches!(error.fault, Fault::Truncated { promised, .. } if promised == Some(absurd + 1)));
+        assert!(
+            matches!(error.fault, CheckpointFault::Truncated { promised, .. } if promised == Some(absurd + 1))
+        );
     }
 }
 
@@ -161,7 +166,7 @@ fn meaningless_contents_are_refused() {
     let starts = sections(&bytes);
     bytes[second + 12 + 8] = b'x';
     let error = reader.error(&with_right_checksums(bytes, &starts));
-    assert!(matches!(error.fault, Fault::Repeated { ref name, .. } if name == "x"), "{error}");
+    assert!(matches!(error.fault, CheckpointFault::Repeated { ref name, .. } if name == "x"), "{error}");
 }
 
 /// Any damage, with valid checksums or not, gives an error or a checkpoint, never a panic.

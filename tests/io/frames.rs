@@ -2,20 +2,20 @@
 
 use crate::{Random, frame, text};
 use std::fs;
-use stripmine_physics::io::extxyz::{Frame, Frames, ReadError, Which, read};
-use stripmine_physics::particles::{Kind, Particle, Particles};
+use stripmine_physics::io::extxyz::{FrameChoice, ParticleFrame, XyzFrames, XyzReadError, read};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles};
 
-fn frames(text: &str) -> Result<Vec<Frame>, ReadError> {
-    Frames::new(text.as_bytes(), "text").collect()
+fn frames(text: &str) -> Result<Vec<ParticleFrame>, XyzReadError> {
+    XyzFrames::new(text.as_bytes(), "text").collect()
 }
 
-fn bits(frame: &Frame) -> Vec<u64> {
-    let Frame { particles, cell, origin, periodic, time, step, seed, .. } = frame;
+fn bits(frame: &ParticleFrame) -> Vec<u64> {
+    let ParticleFrame { particles, cell, origin, periodic, time, step, seed, .. } = frame;
     let disc = |disc: &Particle| {
         let Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } =
             *disc;
         let numbers = [x, y, z, u, v, w, angle, omega, radius, mass].map(f64::to_bits);
-        [vec![u64::from(id), u64::from(kind == Kind::Wall)], numbers.to_vec()].concat()
+        [vec![u64::from(id), u64::from(kind == ParticleKind::Wall)], numbers.to_vec()].concat()
     };
     let numbers = [cell[0], cell[1], origin[0], origin[1], *time].map(f64::to_bits);
     let words = [*step, seed.unwrap_or(0), u64::from(seed.is_some())];
@@ -81,7 +81,7 @@ fn every_bit_of_a_frame_is_read_back() {
     let mut written = frame(3);
     let discs = (1..=2000).map(|id| Particle {
         id,
-        kind: if id > 1900 { Kind::Wall } else { Kind::Grain },
+        kind: if id > 1900 { ParticleKind::Wall } else { ParticleKind::Grain },
         position: [any(), any(), 0.0],
         velocity: [any(), any(), 0.0],
         angle: 0.0,
@@ -100,11 +100,11 @@ fn every_bit_of_a_frame_is_read_back() {
 fn first_last_or_all_frames_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("trajectory.xyz");
-    let all: Vec<Frame> = (0..3).map(frame).collect();
+    let all: Vec<ParticleFrame> = (0..3).map(frame).collect();
     fs::write(&path, all.iter().map(text).collect::<String>() + "\n \n").unwrap();
-    assert_eq!(read(&path, Which::First).unwrap(), all[0]);
-    assert_eq!(read(&path, Which::Last).unwrap(), all[2]);
-    assert_eq!(Frames::open(&path).unwrap().collect::<Result<Vec<_>, _>>().unwrap(), all);
+    assert_eq!(read(&path, FrameChoice::First).unwrap(), all[0]);
+    assert_eq!(read(&path, FrameChoice::Last).unwrap(), all[2]);
+    assert_eq!(XyzFrames::open(&path).unwrap().collect::<Result<Vec<_>, _>>().unwrap(), all);
 }
 
 /// Columns in any order, unknown columns, unknown keys, other line ends.
@@ -119,7 +119,7 @@ fn columns_are_read_in_any_order() {
     assert_eq!(frames(other).unwrap(), frames(ours).unwrap());
     let frame = &frames(ours).unwrap()[0];
     assert_eq!((frame.cell, frame.origin, frame.time, frame.step), ([4.0, 5.0], [0.0; 2], 2.0, 0));
-    assert_eq!((frame.seed, frame.particles.all()[0].kind), (None, Kind::Wall));
+    assert_eq!((frame.seed, frame.particles.all()[0].kind), (None, ParticleKind::Wall));
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn no_bytes_make_the_reader_panic() {
                 _ => drop(bytes.splice(from..from, words[random.below(words.len())].iter().copied())),
             }
         }
-        for frame in Frames::new(bytes.as_slice(), "text") {
+        for frame in XyzFrames::new(bytes.as_slice(), "text") {
             match frame {
                 Err(error) => assert!(error.to_string().starts_with("text:"), "{error}"),
                 Ok(frame) => {
@@ -213,9 +213,9 @@ fn bodies_without_a_box_are_read_back() {
     let text = "1\npbc=\"F F F\" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3 Time=0.5 step=9\n\
                 Si 0.5 0.25 -3.0 1 0.0 -0.1 7.0 0.5 1.0 0.0 0.0 0.0\n";
     std::fs::write(&path, text).unwrap();
-    let frame = Frames::open(&path).unwrap().in_space().next().unwrap().unwrap();
+    let frame = XyzFrames::open(&path).unwrap().in_space().next().unwrap().unwrap();
     assert_eq!(frame.cell, [f64::INFINITY; 2]);
     let body = frame.particles.all()[0];
     assert_eq!((body.position, body.velocity), ([0.5, 0.25, -3.0], [0.0, -0.1, 7.0]));
-    assert!(read(&path, Which::Last).unwrap_err().to_string().contains("Lattice"));
+    assert!(read(&path, FrameChoice::Last).unwrap_err().to_string().contains("Lattice"));
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::extxyz::write;
-use stripmine_physics::io::growing_file::{GrowingFile, GrowingFileError, Mark};
+use stripmine_physics::io::growing_file::{FileMark, GrowingFile, GrowingFileError};
 use stripmine_physics::io::run_moment::{RunHeader, RunMoment};
 use stripmine_physics::io::sink::{Sink, TextSink};
 use stripmine_physics::io::table_file::ObservedRows;
@@ -30,7 +30,7 @@ fn begun(path: &Path) -> Table {
     Table::begin(path.to_owned(), &header(COLUMNS)).unwrap()
 }
 
-fn resumed(path: &Path, columns: [&'static str; 2], mark: Mark) -> Result<Table, GrowingFileError> {
+fn resumed(path: &Path, columns: [&'static str; 2], mark: FileMark) -> Result<Table, GrowingFileError> {
     Table::resume(path.to_owned(), &header(columns), mark, &mut vec![])
 }
 
@@ -51,10 +51,10 @@ fn append(table: &mut Table, step: u64, row: &[f64]) -> io::Result<()> {
 }
 
 /// Writes a table of some rows; the mark is after the first `marked` of them.
-fn table(path: &Path, marked: usize, steps: &[u64]) -> Mark {
+fn table(path: &Path, marked: usize, steps: &[u64]) -> FileMark {
     let _ = fs::remove_file(path);
     let mut table = begun(path);
-    let mut mark = Mark::default();
+    let mut mark = FileMark::default();
     for (i, step) in steps.iter().enumerate() {
         if i == marked {
             mark = table.mark().unwrap();
@@ -163,7 +163,7 @@ fn existing_files_and_links_are_not_overwritten() {
     fs::write(&thesis, "whole").unwrap();
     std::os::unix::fs::symlink(&thesis, &path).unwrap();
     assert!(GrowingFile::create(&path).is_err());
-    assert!(matches!(GrowingFile::resume(&path, Mark::default()), Err(GrowingFileError::NoFile(_))));
+    assert!(matches!(GrowingFile::resume(&path, FileMark::default()), Err(GrowingFileError::NoFile(_))));
     fs::remove_file(&path).unwrap();
     fs::rename(&thesis, &path).unwrap();
     assert!(GrowingFile::create(&path).is_err());

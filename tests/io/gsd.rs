@@ -4,12 +4,12 @@ use crate::Random;
 use std::fs;
 use std::io::{Seek, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
-use stripmine_physics::io::extxyz::Frame;
-use stripmine_physics::io::growing_file::{GrowingFileError, Mark};
-use stripmine_physics::io::gsd::{Frames, LoggedFrame, Writer};
+use stripmine_physics::io::extxyz::ParticleFrame;
+use stripmine_physics::io::growing_file::{FileMark, GrowingFileError};
+use stripmine_physics::io::gsd::{GsdFrames, GsdWriter, LoggedFrame};
 use stripmine_physics::io::run_moment::RunHeader;
 use stripmine_physics::io::sink::Sink;
-use stripmine_physics::particles::{Kind, Particle, Particles};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles};
 use tempfile::TempDir;
 
 /// Header of a run that logs two quantities.
@@ -21,8 +21,8 @@ fn logging(columns: Vec<&'static str>) -> RunHeader {
     RunHeader { logged: (0..columns.len()).collect(), columns, ..RunHeader::default() }
 }
 
-fn resumed(path: &Path, header: &RunHeader, mark: Mark) -> Result<Writer, GrowingFileError> {
-    Writer::resume(path.to_owned(), header, mark, &mut vec![])
+fn resumed(path: &Path, header: &RunHeader, mark: FileMark) -> Result<GsdWriter, GrowingFileError> {
+    GsdWriter::resume(path.to_owned(), header, mark, &mut vec![])
 }
 
 /// Number of frames that makes the index move twice.
@@ -38,7 +38,7 @@ fn disc(id: u32, step: u64) -> Particle {
     let along = 0.1 * f64::from(id) + 0.01 * step as f64;
     Particle {
         id,
-        kind: if id > 3 { Kind::Wall } else { Kind::Grain },
+        kind: if id > 3 { ParticleKind::Wall } else { ParticleKind::Grain },
         position: [along, 1.0 / (1.0 + along), 0.0],
         velocity: [-along, 1e-300, 0.0],
         angle: 0.0,
@@ -56,7 +56,7 @@ fn plane(step: u64) -> LoggedFrame {
         let turned = &mut particles.all_mut()[0];
         (turned.angle, turned.omega) = (-1.0 / 3.0, 0.25);
     }
-    let frame = Frame {
+    let frame = ParticleFrame {
         particles,
         cell: [10.0 / 3.0, 8.0],
         origin: [-0.5, 0.1],
@@ -72,18 +72,24 @@ fn plane(step: u64) -> LoggedFrame {
 /// Two bodies in space that move apart.
 fn space(step: u64) -> LoggedFrame {
     let far = 1.5 + step as f64;
-    let body = |id, z| Particle { kind: Kind::Grain, position: [far, -far, z], ..disc(id, step) };
+    let body = |id, z| Particle { kind: ParticleKind::Grain, position: [far, -far, z], ..disc(id, step) };
     let LoggedFrame { frame, values, .. } = plane(step);
     let particles = Particles::new(vec![body(1, far), body(2, -0.25)]);
     let open = ([f64::INFINITY; 2], [0.0; 2], Some([false; 2]));
-    let frame = Frame { particles, cell: open.0, origin: open.1, periodic: open.2, ..Frame::clone(&frame) };
+    let frame = ParticleFrame {
+        particles,
+        cell: open.0,
+        origin: open.1,
+        periodic: open.2,
+        ..ParticleFrame::clone(&frame)
+    };
     LoggedFrame { frame: frame.into(), images: vec![[1, -2], [0, step as i32]], values }
 }
 
 /// Writes a file of `count` frames; returns its bytes and its mark without frames, after the first, and so on.
-fn written(path: &Path, of: fn(u64) -> LoggedFrame, count: u64) -> (Vec<Vec<u8>>, Vec<Mark>) {
+fn written(path: &Path, of: fn(u64) -> LoggedFrame, count: u64) -> (Vec<Vec<u8>>, Vec<FileMark>) {
     let _ = fs::remove_file(path);
-    let mut file = Writer::begin(path.to_owned(), &header()).unwrap();
+    let mut file = GsdWriter::begin(path.to_owned(), &header()).unwrap();
     let mut grown = (vec![fs::read(path).unwrap()], vec![file.mark().unwrap()]);
     for step in 0..count {
         file.write(of(step)).unwrap();
@@ -98,7 +104,7 @@ fn frames_are_read_by_number() {
     let (_folder, path) = folder_and_path();
     for of in [plane, space] {
         written(&path, of, MANY);
-        let mut frames = Frames::open(&path).unwrap();
+        let mut frames = GsdFrames::open(&path).unwrap();
         assert_eq!(frames.frame_count(), MANY);
         let mut random = Random(1);
         for _ in 0..500 {
@@ -115,7 +121,7 @@ fn frames_are_read_by_number() {
 fn every_disc_is_inside_the_box() {
     let (_folder, path) = folder_and_path();
     let high = |step: u64| {
-        let mut frame = Frame::clone(&plane(step).frame);
+        let mut frame = ParticleFrame::clone(&plane(step).frame);
         frame.particles.all_mut()[0].position[1] = if step == 1 { 19.0 } else { 1.0 };
         LoggedFrame { frame: frame.into(), ..plane(step) }
     };
@@ -127,7 +133,7 @@ fn every_disc_is_inside_the_box() {
     };
     // The box of 8 has its centre at 4.1.
     assert!(heights(1) == 32.0 && heights(2) != 8.0, "{} {}", heights(1), heights(2));
-    assert_eq!(Frames::open(&path).unwrap().frame(1).unwrap().unwrap().cell, [10.0 / 3.0, 8.0]);
+    assert_eq!(GsdFrames::open(&path).unwrap().frame(1).unwrap().unwrap().cell, [10.0 / 3.0, 8.0]);
 }
 
 /// Readers of the schema replace a missing chunk by that of the first frame if it has as many rows. Only chunks that differ from the
@@ -160,7 +166,7 @@ fn resumed_trajectory_equals_an_uninterrupted_one() {
             let mut file = resumed(&path, &header(), mark).unwrap();
             assert!(&fs::read(&path).unwrap() == bytes, "the file must not change before it is truncated");
             file.cut().unwrap();
-            assert_eq!(Frames::open(&path).unwrap().frame_count(), number as u64);
+            assert_eq!(GsdFrames::open(&path).unwrap().frame_count(), number as u64);
             for step in number as u64..MANY {
                 file.write(plane(step)).unwrap();
             }
@@ -202,7 +208,7 @@ fn killed_trajectory_has_whole_frames() {
         }));
         for state in states {
             fs::write(&path, &state).unwrap();
-            let mut frames = Frames::open(&path).unwrap();
+            let mut frames = GsdFrames::open(&path).unwrap();
             let whole = count as u64 - 1;
             assert_eq!(frames.frame_count(), whole, "{} bytes", state.len());
             assert_eq!(frames.frame(whole - 1).unwrap().unwrap().step, whole - 1);
@@ -282,7 +288,7 @@ fn damaged_files_are_refused_with_the_location() {
     ];
     let first = |bytes: &[u8]| {
         fs::write(&path, bytes).unwrap();
-        let error = Frames::open(&path).and_then(|mut frames| frames.frame(0)).unwrap_err();
+        let error = GsdFrames::open(&path).and_then(|mut frames| frames.frame(0)).unwrap_err();
         assert!(error.to_string().contains("trajectory.gsd: "), "{error}");
         error.to_string()
     };
@@ -307,7 +313,7 @@ fn damaged_files_are_refused_with_the_location() {
     }
     for cut in [0, 100, 300, index + 40, data - 1, data + 1, whole.len() - 1] {
         fs::write(&path, &whole[..cut]).unwrap();
-        let error = Frames::open(&path).unwrap_err().to_string();
+        let error = GsdFrames::open(&path).unwrap_err().to_string();
         assert!(error.contains(&format!("the file at byte {cut}")), "{error}");
     }
 }
@@ -319,7 +325,7 @@ fn damage_of_a_moved_index_is_refused() {
     let (_folder, path) = folder_and_path();
     // With so many quantities the index moves in the third frame.
     let header = logging((0..400).map(|number| &*format!("q{number}").leak()).collect());
-    let mut file = Writer::begin(path.clone(), &header).unwrap();
+    let mut file = GsdWriter::begin(path.clone(), &header).unwrap();
     let frame = |step| LoggedFrame { values: vec![0.5; 400], ..plane(step) };
     (0..3).for_each(|step| file.write(frame(step)).unwrap());
     let (mark, bytes) = (file.mark().unwrap(), fs::read(&path).unwrap());
@@ -376,7 +382,7 @@ fn holes_take_no_memory() {
         changes.iter().for_each(|&(at, new)| bytes[at..at + new.len()].copy_from_slice(new));
         fs::write(&path, bytes).unwrap();
         fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(1 << 42).unwrap();
-        Frames::open(&path).and_then(|mut frames| frames.frame(0)).unwrap_err().to_string()
+        GsdFrames::open(&path).and_then(|mut frames| frames.frame(0)).unwrap_err().to_string()
     };
     let names = (1_u64 << 34).to_le_bytes();
     assert!(sparse(&[(32, &names)]).contains("byte 32: expected a list of names of at most 4 MiB"));

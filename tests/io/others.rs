@@ -1,6 +1,6 @@
 //! Two discs as different programs write them: every unambiguous spelling is read.
 
-use stripmine_physics::io::extxyz::{Frame, Frames};
+use stripmine_physics::io::extxyz::{ParticleFrame, XyzFrames};
 
 const LATTICE: &str = r#"Lattice="20.0 0.0 0.0 0.0 20.0 0.0 0.0 0.0 1.0" pbc="T T F""#;
 const OURS: &str = "Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:omega:R:3";
@@ -57,11 +57,11 @@ const CASES: [(&str, &str, &str); 12] = [
     ),
 ];
 
-fn read(program: &str, comment: &str, rows: &str) -> Frame {
+fn read(program: &str, comment: &str, rows: &str) -> ParticleFrame {
     let mark = if program == "byte-order mark" { "\u{feff}" } else { "" };
     let comment = comment.replace("LATTICE", LATTICE).replace("OURS", OURS);
     let text = format!("{mark}2\n{comment}\n{rows}\n");
-    let mut frames = Frames::new(text.as_bytes(), program);
+    let mut frames = XyzFrames::new(text.as_bytes(), program);
     let frame = frames.next().unwrap().unwrap_or_else(|error| panic!("{program}: {error}"));
     assert!(frames.next().is_none());
     frame
@@ -78,6 +78,6 @@ fn frames_of_other_programs_are_read() {
     for (program, comment, rows) in CASES {
         let frame = read(program, comment, rows);
         assert_eq!(frame.has_raised_ids, program == "ids from 0", "{program}");
-        assert_eq!(Frame { has_raised_ids: false, ..frame }, ours, "{program}");
+        assert_eq!(ParticleFrame { has_raised_ids: false, ..frame }, ours, "{program}");
     }
 }

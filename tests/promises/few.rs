@@ -5,10 +5,10 @@ use rand::RngExt;
 use std::fmt::Write;
 use std::fs;
 use std::sync::atomic::AtomicBool;
-use stripmine_kernels::noise::{Purpose as Of, Stream};
+use stripmine_kernels::noise::{RandomPurpose as Of, Stream};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::langevin::laws::PairLaw;
-use stripmine_physics::method::{Clock, METHODS, Prepared, Purpose, Simulation, Snapshot, Until, load};
+use stripmine_physics::method::{Clock, METHODS, Prepared, Simulation, Snapshot, StartPurpose, Until, load};
 use stripmine_physics::words::Words;
 
 /// Largest number of particles of a scene.
@@ -76,7 +76,7 @@ pub fn hold(times: usize) -> [usize; 2] {
 
 /// Runs a scene in one piece and in several, and compares both at each cut; returns the number of resumptions.
 fn resumed(prepared: &Prepared, stream: &mut Stream, what: &str) -> usize {
-    let start = || prepared.start(Purpose::Run).unwrap_or_else(|error| panic!("{error:?}: {what}"));
+    let start = || prepared.start(StartPurpose::Run).unwrap_or_else(|error| panic!("{error:?}: {what}"));
     let (mut whole, mut parts) = (start(), start());
     for cut in 1..=CUTS {
         let moment = match prepared.schedule.until {

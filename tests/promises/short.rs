@@ -1,23 +1,23 @@
 //! Shortened presets, and their final states.
 
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::method::{Clock, Entry, Every, Methods, Prepared, Purpose, Until, load};
+use stripmine_physics::method::{Clock, Every, MethodEntry, Methods, Prepared, StartPurpose, Until, load};
 use stripmine_physics::particles::Particles;
-use stripmine_physics::scene::Kind;
+use stripmine_physics::scene::KeyValueKind;
 
 /// Runs with more particles than `MANY` are reduced to `FEWER`.
 const MANY: usize = 500;
 const FEWER: usize = 200;
 /// Overrides that shorten a preset: fewer particles, a part of its length, all files, and rows and frames due at several moments; no
 /// frame is due at the end.
-pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<String> {
+pub fn shortened(methods: Methods, entry: &'static MethodEntry, preset: &str) -> Vec<String> {
     let prepared = |overrides: &[String]| load(preset, overrides, methods).map(|(prepared, _)| prepared);
     let whole = prepared(&[]).expect("a preset is a scene");
     let mut overrides: Vec<String> = entry
         .vocabulary
         .keys
         .section("output")
-        .filter(|key| key.kind == Kind::Switch)
+        .filter(|key| key.kind == KeyValueKind::Switch)
         .map(|key| format!("output.{}=true", key.name))
         // Some scenes do not have every file.
         .filter(|asked| prepared(std::slice::from_ref(asked)).is_ok())
@@ -47,7 +47,7 @@ pub fn shortened(methods: Methods, entry: &'static Entry, preset: &str) -> Vec<S
 
 /// Final state of a scene run without files: clock, particles, and their positions.
 pub fn end_of(prepared: &Prepared) -> (Clock, Particles, Vec<[f32; 3]>) {
-    let mut simulation = prepared.start(Purpose::Run).expect("it starts");
+    let mut simulation = prepared.start(StartPurpose::Run).expect("it starts");
     simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).expect("it does not fail");
     (simulation.clock(), simulation.particles(), simulation.per_particle().positions())
 }

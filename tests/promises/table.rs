@@ -16,14 +16,14 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use stripmine::provenance::built;
-use stripmine_kernels::noise::{Purpose as Of, Stream};
+use stripmine_kernels::noise::{RandomPurpose as Of, Stream};
 use stripmine_physics::io::FORMATS;
-use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::extxyz::ParticleFrame;
 use stripmine_physics::io::output_format::FrameWriting;
 use stripmine_physics::io::trajectory::FrameReading;
-use stripmine_physics::method::{Entry, Every, Methods, Prepared, Schedule, load};
+use stripmine_physics::method::{Every, MethodEntry, Methods, Prepared, Schedule, load};
 use stripmine_physics::particles::Particles;
-use stripmine_physics::run::{Ending, Existing, Job, run};
+use stripmine_physics::run::{Ending, ExistingRun, RunJob, run};
 
 /// Part of the table that is tested.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,7 @@ const OF_THE_SESSION: [&str; 5] = ["begun", "ended", "seconds", "phases", "notes
 
 /// A shortened scene with one configuration.
 struct Case {
-    entry: &'static Entry,
+    entry: &'static MethodEntry,
     preset: &'static str,
     overrides: Vec<String>,
     /// True for the preset's default settings; their pictures and messages are tested too.
@@ -97,7 +97,7 @@ impl Held {
 }
 
 /// Every preset of a method, with every engine and every search that the scene allows.
-fn cases(methods: Methods, entry: &'static Entry, extent: Extent) -> Vec<Case> {
+fn cases(methods: Methods, entry: &'static MethodEntry, extent: Extent) -> Vec<Case> {
     let ways = ways(entry, &[("machine", "precision")]);
     let (mut cases, mut seen) = (vec![], BTreeSet::new());
     for preset in entry.vocabulary.presets {
@@ -182,8 +182,8 @@ impl Case {
             words += 1;
             is_interrupted.store(Some(words) == stop, Ordering::Relaxed);
         };
-        let existing = Existing::Resume { other_version: false };
-        let job = Job { prepared, quantities: self.entry.quantities, program: &built() };
+        let existing = ExistingRun::Resume { other_version: false };
+        let job = RunJob { prepared, quantities: self.entry.quantities, program: &built() };
         let ending = run(job, folder, existing, &is_interrupted, progress, |_| {});
         let ending = ending.unwrap_or_else(|error| panic!("{}: {error}", self.label()));
         (matches!(ending, Ending::Done(_)), words)
@@ -364,7 +364,8 @@ impl Case {
             }
             if let FrameReading::Opens(open) = format.reading {
                 let frames = open(&path).unwrap_or_else(|error| panic!("{label}: {error}"));
-                let frame = |frame: Frame| (frame.step, frame.time.to_bits(), places(&frame.particles));
+                let frame =
+                    |frame: ParticleFrame| (frame.step, frame.time.to_bits(), places(&frame.particles));
                 let frames =
                     frames.map(|read| read.map(frame).unwrap_or_else(|error| panic!("{label}: {error}")));
                 assert_eq!(frames.collect::<Vec<_>>(), texts, "{label}");

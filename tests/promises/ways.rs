@@ -1,12 +1,12 @@
 //! Configurations for the scenes of a method: its engines, its searches, and the choices of further keys.
 
-use stripmine_physics::method::Entry;
-use stripmine_physics::scene::Kind;
+use stripmine_physics::method::MethodEntry;
+use stripmine_physics::scene::KeyValueKind;
 
 /// Overrides that set a key to each of its words; the first one is empty.
-pub fn words(entry: &Entry, section: &str, name: &str) -> Vec<Vec<String>> {
+pub fn words(entry: &MethodEntry, section: &str, name: &str) -> Vec<Vec<String>> {
     let words = match entry.vocabulary.keys.key(section, name).map(|key| key.kind) {
-        Some(Kind::Choice(words)) => words,
+        Some(KeyValueKind::Choice(words)) => words,
         _ => &[],
     };
     let given = words.iter().filter(|word| **word != "auto");
@@ -14,7 +14,7 @@ pub fn words(entry: &Entry, section: &str, name: &str) -> Vec<Vec<String>> {
 }
 
 /// Every engine with every search, then each choice of the other keys alone.
-pub fn ways(entry: &Entry, others: &[(&str, &str)]) -> Vec<Vec<String>> {
+pub fn ways(entry: &MethodEntry, others: &[(&str, &str)]) -> Vec<Vec<String>> {
     let searches = words(entry, "search", "by");
     let engines = words(entry, "machine", "engine").into_iter();
     let engines =

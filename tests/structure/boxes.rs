@@ -4,13 +4,15 @@ use super::open_top::ideal_above_floor;
 use super::{ideal, ideal_in_channel, ideal_of};
 use rand::RngExt;
 use std::f64::consts::PI;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::particles::{Particle, Particles};
-use stripmine_physics::structure::{Observable, Over, Seen, Setting, observable, seen};
+use stripmine_physics::structure::{
+    FunctionArguments, SamplingKind, StructureObservable, StructureSetting, observable, seen,
+};
 
 /// Discs of a box, with the vectors between them by the nearest images.
 struct Seeing {
-    setting: Setting,
+    setting: StructureSetting,
     discs: Vec<Particle>,
     ways: Vec<Vec<[f64; 2]>>,
 }
@@ -42,7 +44,7 @@ impl Seeing {
     }
 
     /// The naive value at a point of the function; `None` without data.
-    fn naive(&self, observable: &Observable, place: &[f64]) -> Option<f64> {
+    fn naive(&self, observable: &StructureObservable, place: &[f64]) -> Option<f64> {
         let (count, domain) = (self.discs.len() as f64, &self.setting.domain);
         let all = || 0..self.discs.len();
         let (name, axis) = match observable.name.split_once('(') {
@@ -119,9 +121,9 @@ impl Seeing {
 
 #[test]
 fn functions_agree_with_naive_sums() {
-    let mut random = Stream::new(8, Purpose::Test, 0);
+    let mut random = Stream::new(8, RandomPurpose::Test, 0);
     let mixture: Vec<f64> = [vec![0.25; 60], vec![3.0; 6]].concat();
-    let boxes: [(&str, (Setting, Particles)); 9] = [
+    let boxes: [(&str, (StructureSetting, Particles)); 9] = [
         ("square", ideal(&mut random, [20.0, 20.0], [true; 2], 150)),
         ("4 × 60", ideal(&mut random, [4.0, 60.0], [true; 2], 90)),
         ("closed", ideal(&mut random, [20.0, 14.0], [false; 2], 100)),
@@ -148,11 +150,11 @@ fn functions_agree_with_naive_sums() {
                 continue;
             }
             let observable = observable(name).unwrap();
-            let Seen::Once { over, further, .. } = observable.seen else { unreachable!() };
+            let SamplingKind::Once { over, further, .. } = observable.seen else { unreachable!() };
             let [found, weights] = seen(observable, setting, &particles);
             let places = over.places(&setting);
             assert_eq!(found.len(), places.len() + further, "{which}: {name}");
-            assert!(matches!(over, Over::Waves) == (name == "S(k)"));
+            assert!(matches!(over, FunctionArguments::Waves) == (name == "S(k)"));
             let mut largest = [0.0_f64; 2];
             for ((place, found), weight) in places.iter().zip(&found).zip(weights) {
                 match seeing.naive(observable, place) {

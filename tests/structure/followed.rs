@@ -1,8 +1,8 @@
 //! Discs across periodic sides: their paths in steps so small that the nearest image of the next position is the right one.
 
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::method::{METHODS, Purpose, Simulation, Until, load};
-use stripmine_physics::particles::States;
+use stripmine_physics::method::{METHODS, Simulation, StartPurpose, Until, load};
+use stripmine_physics::particles::GrainStates;
 
 /// Steps of a run, and the step at which it is saved to a checkpoint and resumed.
 const STEPS: u64 = 400;
@@ -35,8 +35,8 @@ fn discs_are_followed_across_periodic_sides() {
         let asked = [&sets[..], &["output.structure=[\"msd\"]".to_owned()]].concat();
         let (prepared, _) = load(scene, &asked, METHODS).unwrap_or_else(|error| panic!("{named}: {error}"));
         let (domain, grains) = (prepared.domain, prepared.particles().grain_count());
-        let mut simulation = prepared.start(Purpose::Run).unwrap();
-        let mut states = States::of(prepared.particles().grains());
+        let mut simulation = prepared.start(StartPurpose::Run).unwrap();
+        let mut states = GrainStates::of(prepared.particles().grains());
         let mut look = |simulation: &dyn Simulation| {
             simulation.per_particle().states(&mut states);
             states.rows().iter().map(|row| [row[0], row[1]]).collect::<Vec<_>>()
@@ -59,7 +59,7 @@ fn discs_are_followed_across_periodic_sides() {
             before = now;
             if step == RESUMED_AT {
                 let (clock, kept) = (simulation.clock(), simulation.snapshot());
-                simulation = prepared.start(Purpose::Run).unwrap();
+                simulation = prepared.start(StartPurpose::Run).unwrap();
                 simulation.restore(clock, kept).unwrap();
             }
         }
@@ -80,11 +80,11 @@ fn discs_are_followed_across_periodic_sides() {
         assert!(crossed > 0, "{named}: nothing crossed a side");
         // A run without displacements starts to count from here.
         let (without, _) = load(scene, &sets, METHODS).unwrap();
-        let mut plain = without.start(Purpose::Run).unwrap();
+        let mut plain = without.start(StartPurpose::Run).unwrap();
         plain
             .advance(&[if dt > 0.0 { Until::Time(1.0) } else { Until::Steps(10) }], &AtomicBool::new(false))
             .unwrap();
-        let mut later = prepared.start(Purpose::Run).unwrap();
+        let mut later = prepared.start(StartPurpose::Run).unwrap();
         later.restore(plain.clock(), plain.snapshot()).unwrap_or_else(|why| panic!("{named}: {why}"));
     }
 }

@@ -5,19 +5,21 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use stripmine_kernels::noise::{Purpose as Noise, Stream};
+use stripmine_kernels::noise::{RandomPurpose as Noise, Stream};
 use stripmine_kernels::sweep::pair::Pair;
 use stripmine_physics::method::observed::find;
-use stripmine_physics::method::{METHODS, Purpose, Until, load};
-use stripmine_physics::particles::{Kind, Particles};
-use stripmine_physics::structure::{Look, PairForces, Seen, Setting, forces_on_each, net_forces, observable};
+use stripmine_physics::method::{METHODS, StartPurpose, Until, load};
+use stripmine_physics::particles::{ParticleKind, Particles};
+use stripmine_physics::structure::{
+    PairForces, SamplingKind, StructureSample, StructureSetting, forces_on_each, net_forces, observable,
+};
 
 const NAMES: [&str; 3] = ["stress_xx(x,y)", "stress_xy(x,y)", "stress_yy(x,y)"];
 
 /// Components of the stress, cell by cell.
-fn stress(setting: Setting, discs: &Particles, forces: &PairForces) -> [Vec<f64>; 3] {
+fn stress(setting: StructureSetting, discs: &Particles, forces: &PairForces) -> [Vec<f64>; 3] {
     let observables = NAMES.map(|name| observable(name).unwrap());
-    let mut look = Look::new(setting, discs, observables.into_iter());
+    let mut look = StructureSample::new(setting, discs, observables.into_iter());
     assert!(look.at(|states| states.take_up(discs)));
     look.meet(discs, forces);
     observables.map(|it| {
@@ -39,7 +41,7 @@ fn made_up() -> PairForces {
 }
 
 /// Discs with different velocities, spins and masses, every seventh of which is a wall.
-fn varied(periodic: [bool; 2], seed: u64) -> (Setting, Particles) {
+fn varied(periodic: [bool; 2], seed: u64) -> (StructureSetting, Particles) {
     let mut random = Stream::new(seed, Noise::Test, 0);
     let (setting, discs) = ideal(&mut random, [23.0, 17.0], periodic, 700);
     let mut discs = discs.all().to_vec();
@@ -48,7 +50,7 @@ fn varied(periodic: [bool; 2], seed: u64) -> (Setting, Particles) {
         disc.velocity = [1.0 - part, part * part, 0.0];
         disc.omega = part - 0.5;
         disc.mass = 1.0 + part;
-        disc.kind = if number % 7 == 0 { Kind::Wall } else { Kind::Grain };
+        disc.kind = if number % 7 == 0 { ParticleKind::Wall } else { ParticleKind::Grain };
     }
     (setting, Particles::new(discs))
 }
@@ -59,7 +61,7 @@ fn stress_is_the_sum_over_all_pairs() {
     for (periodic, seed) in [([true, true], 1), ([true, false], 2), ([false, false], 3)] {
         let (setting, discs) = varied(periodic, seed);
         let forces = made_up();
-        let Seen::Once { over, .. } = observable(NAMES[0]).unwrap().seen else { unreachable!() };
+        let SamplingKind::Once { over, .. } = observable(NAMES[0]).unwrap().seen else { unreachable!() };
         let middles = over.places(&setting);
         let columns = middles.iter().take_while(|middle| middle[1] == middles[0][1]).count();
         let rows = middles.len() / columns;
@@ -77,7 +79,7 @@ fn stress_is_the_sum_over_all_pairs() {
         let mut net = vec![[0.0; 2]; discs.len()];
         let all = discs.all();
         for (at, one) in all.iter().enumerate() {
-            if one.kind == Kind::Grain {
+            if one.kind == ParticleKind::Grain {
                 let [x, y] = one.planar_velocity();
                 for (sum, part) in [x * x, x * y, y * y].into_iter().enumerate() {
                     naive[3 * cell(one.place()) + sum] += one.mass * part / area[0];
@@ -85,7 +87,7 @@ fn stress_is_the_sum_over_all_pairs() {
             }
             for (other, two) in all.iter().enumerate().skip(at + 1) {
                 let way = domain.displacement(one.place(), two.place());
-                let are_walls = one.kind == Kind::Wall && two.kind == Kind::Wall;
+                let are_walls = one.kind == ParticleKind::Wall && two.kind == ParticleKind::Wall;
                 if way[0].hypot(way[1]) >= forces.reach || are_walls {
                     continue;
                 }
@@ -147,12 +149,12 @@ fn stress_does_not_depend_on_threads() {
 fn the_mean_stress_is_the_pressure() {
     for scene in ["langevin-dense", "dense-gas", "wide-sizes"] {
         let (prepared, method) = load(scene, &[], METHODS).unwrap();
-        let mut simulation = prepared.start(Purpose::Run).unwrap();
+        let mut simulation = prepared.start(StartPurpose::Run).unwrap();
         simulation.advance(&[Until::Steps(300)], &AtomicBool::new(false)).unwrap();
         let observed = |name: &str| simulation.observe()[find(method.quantities, name).unwrap()];
         let area = prepared.domain.area();
         let of_pairs = observed("pressure") * area - observed("kinetic");
-        let setting = Setting::new(prepared.domain, prepared.particles());
+        let setting = StructureSetting::new(prepared.domain, prepared.particles());
         let forces = prepared.model.pair_forces().unwrap();
         let discs = simulation.particles();
         let [xx, _, yy] = stress(setting, &discs, &forces);
@@ -173,12 +175,12 @@ fn stress_of_a_heap_balances_its_weight() {
     let sets = ["particles.wall_motion=\"fixed\"", "law.normal_damping=2000.0", "run.time=3.0"];
     let sets = sets.map(str::to_owned);
     let (prepared, _) = load("shaken-box", &sets, METHODS).unwrap();
-    let mut simulation = prepared.start(Purpose::Run).unwrap();
+    let mut simulation = prepared.start(StartPurpose::Run).unwrap();
     simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false)).unwrap();
     let discs = simulation.particles();
-    let setting = Setting::new(prepared.domain, prepared.particles());
+    let setting = StructureSetting::new(prepared.domain, prepared.particles());
     let [_, _, yy] = stress(setting, &discs, &prepared.model.pair_forces().unwrap());
-    let floor = discs.all().iter().find(|disc| disc.kind == Kind::Wall).unwrap().position[1];
+    let floor = discs.all().iter().find(|disc| disc.kind == ParticleKind::Wall).unwrap().position[1];
     let found = yy.iter().sum::<f64>() / yy.len() as f64 * prepared.domain.area();
     let weights = discs.grains().iter().map(|disc| 9.81 * disc.mass * (disc.position[1] - floor));
     let held = weights.sum::<f64>();

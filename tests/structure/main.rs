@@ -19,10 +19,12 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::domain::Domain;
-use stripmine_physics::particles::{Kind, Particle, Particles};
-use stripmine_physics::structure::{NAMES, Seen, Setting, observable, pair_counts, pair_counts_of_all, seen};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles};
+use stripmine_physics::structure::{
+    NAMES, SamplingKind, StructureSetting, observable, pair_counts, pair_counts_of_all, seen,
+};
 
 fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::cargo_bin("stripmine").unwrap();
@@ -69,7 +71,12 @@ fn headline(folder: &Path, out: &str, name: &str, what: &str) -> [f64; 2] {
 }
 
 /// An ideal gas in a box: random points, at least a radius away from closed sides.
-fn ideal(random: &mut Stream, sides: [f64; 2], periodic: [bool; 2], count: u32) -> (Setting, Particles) {
+fn ideal(
+    random: &mut Stream,
+    sides: [f64; 2],
+    periodic: [bool; 2],
+    count: u32,
+) -> (StructureSetting, Particles) {
     ideal_of(random, sides, periodic, &vec![0.5; count as usize])
 }
 
@@ -79,26 +86,26 @@ fn ideal_of(
     sides: [f64; 2],
     periodic: [bool; 2],
     radii: &[f64],
-) -> (Setting, Particles) {
+) -> (StructureSetting, Particles) {
     let origin = [-3.0, 1.0];
     let disc = |(id, &radius): (u32, &f64)| {
         let at = [0, 1].map(|axis| {
             let rim = if periodic[axis] { 0.0 } else { radius };
             random.random_range(origin[axis] + rim..origin[axis] + sides[axis] - rim)
         });
-        disc(id, Kind::Grain, at, radius)
+        disc(id, ParticleKind::Grain, at, radius)
     };
     let discs = Particles::new((0..).zip(radii).map(disc).collect());
-    (Setting::new(Domain::planar(origin, sides, periodic), &discs), discs)
+    (StructureSetting::new(Domain::planar(origin, sides, periodic), &discs), discs)
 }
 
-fn disc(id: u32, kind: Kind, [x, y]: [f64; 2], radius: f64) -> Particle {
+fn disc(id: u32, kind: ParticleKind, [x, y]: [f64; 2], radius: f64) -> Particle {
     let velocity = [1.0, 0.0, 0.0];
     Particle { id, kind, position: [x, y, 0.0], velocity, angle: 0.0, omega: 0.0, radius, mass: 1.0 }
 }
 
 /// An ideal gas in a channel between rows of wall discs; the space behind the walls is empty.
-fn ideal_in_channel(random: &mut Stream) -> (Setting, Particles) {
+fn ideal_in_channel(random: &mut Stream) -> (StructureSetting, Particles) {
     let (sides, radius) = ([20.0, 12.0], 0.4);
     let walls = (0..20).flat_map(|column| [3.0, 9.0].map(|y| [f64::from(column) + 0.5, y]));
     let walls: Vec<[f64; 2]> = walls.collect();
@@ -107,15 +114,15 @@ fn ideal_in_channel(random: &mut Stream) -> (Setting, Particles) {
     while all.len() < 150 {
         let at = [random.random_range(0.0..sides[0]), random.random_range(3.0..9.0)];
         if walls.iter().all(|wall| domain.distance(at, *wall) > 0.5 + radius) {
-            all.push(disc(all.len() as u32, Kind::Grain, at, radius));
+            all.push(disc(all.len() as u32, ParticleKind::Grain, at, radius));
         }
     }
-    all.extend(walls.into_iter().zip(150..).map(|(at, id)| disc(id, Kind::Wall, at, 0.5)));
+    all.extend(walls.into_iter().zip(150..).map(|(at, id)| disc(id, ParticleKind::Wall, at, 0.5)));
     let particles = Particles::new(all);
-    (Setting::new(domain, &particles), particles)
+    (StructureSetting::new(domain, &particles), particles)
 }
 
-fn values(name: &str, setting: &Setting, discs: &Particles) -> Vec<f64> {
+fn values(name: &str, setting: &StructureSetting, discs: &Particles) -> Vec<f64> {
     let [values, _] = seen(observable(name).unwrap(), *setting, discs);
     values
 }
@@ -125,9 +132,9 @@ fn values(name: &str, setting: &Setting, discs: &Particles) -> Vec<f64> {
 /// of a search over all pairs.
 #[test]
 fn an_ideal_gas_has_no_structure() {
-    let mut random = Stream::new(1, Purpose::Test, 0);
+    let mut random = Stream::new(1, RandomPurpose::Test, 0);
     let mixed: Vec<f64> = [vec![0.3; 120], vec![2.4; 30]].concat();
-    let mut of = |which: usize| -> (Setting, Particles) {
+    let mut of = |which: usize| -> (StructureSetting, Particles) {
         match which {
             0 => ideal(&mut random, [20.0, 13.0], [true, true], 150),
             1 => ideal(&mut random, [20.0, 9.0], [true, false], 150),
@@ -138,7 +145,7 @@ fn an_ideal_gas_has_no_structure() {
     };
     for which in 0..5 {
         const LOOKS: usize = 200;
-        let made: Vec<(Setting, Particles)> = (0..LOOKS).map(|_| of(which)).collect();
+        let made: Vec<(StructureSetting, Particles)> = (0..LOOKS).map(|_| of(which)).collect();
         let (setting, _) = &made[0];
         for name in ["g(r)", "S(k)"].into_iter().take(if setting.domain.is_periodic(0) { 2 } else { 1 }) {
             // The reference of the ideal gas is computed once for a run, but here for each sample.
@@ -181,16 +188,16 @@ fn a_crystal_is_in_order() {
     let disc = |id: u32| {
         let (column, row) = (f64::from(id % columns), f64::from(id / columns));
         let at = [(column + 0.5 * (row % 2.0) + 0.1) * edge, (row + 0.1) * edge * 0.75_f64.sqrt()];
-        disc(id, Kind::Grain, at, 0.5)
+        disc(id, ParticleKind::Grain, at, 0.5)
     };
     let discs = Particles::new((0..columns * rows).map(disc).collect());
-    let setting = Setting::new(domain, &discs);
+    let setting = StructureSetting::new(domain, &discs);
     let shares = values("coordination", &setting, &discs);
     assert!((shares[6] - 1.0).abs() < 1e-12, "{shares:?}");
     let order = values("psi6", &setting, &discs);
     let [global, mean] = [order[order.len() - 2], order[order.len() - 1]];
     assert!((global - 1.0).abs() < 1e-9 && (mean - 1.0).abs() < 1e-9, "{global} {mean}");
-    let Seen::Once { over, .. } = observable("S(k)").unwrap().seen else { unreachable!() };
+    let SamplingKind::Once { over, .. } = observable("S(k)").unwrap().seen else { unreachable!() };
     let factor = values("S(k)", &setting, &discs);
     let vectors = over.places(&setting);
     // All waves along x and y up to 25 of a diameter.

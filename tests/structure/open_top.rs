@@ -3,22 +3,26 @@
 use super::{disc, rows, run, values};
 use rand::RngExt;
 use std::fs;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::domain::Domain;
-use stripmine_physics::particles::{Kind, Particles};
-use stripmine_physics::structure::{Setting, observable, seen};
+use stripmine_physics::particles::{ParticleKind, Particles};
+use stripmine_physics::structure::{StructureSetting, observable, seen};
 
 /// Random points along a floor, whose density decreases with height: some are above the height of the box.
-pub fn ideal_above_floor(random: &mut Stream, periodic: [bool; 2], radii: &[f64]) -> (Setting, Particles) {
+pub fn ideal_above_floor(
+    random: &mut Stream,
+    periodic: [bool; 2],
+    radii: &[f64],
+) -> (StructureSetting, Particles) {
     let (origin, sides, scale) = ([-3.0, 1.0], [20.0, 15.0], 6.0);
     let disc = |(id, &radius): (u32, &f64)| {
         let rim = if periodic[0] { 0.0 } else { radius };
         let x = random.random_range(origin[0] + rim..origin[0] + sides[0] - rim);
         let height = -scale * random.random_range(0.01_f64..1.0).ln();
-        disc(id, Kind::Grain, [x, origin[1] + radius + height], radius)
+        disc(id, ParticleKind::Grain, [x, origin[1] + radius + height], radius)
     };
     let discs = Particles::new((0..).zip(radii).map(disc).collect());
-    let setting = Setting::with_open_top(Domain::planar(origin, sides, periodic), &discs);
+    let setting = StructureSetting::with_open_top(Domain::planar(origin, sides, periodic), &discs);
     let above = discs.all().iter().filter(|disc| disc.position[1] > origin[1] + sides[1]).count();
     assert!(above > 0);
     (setting, discs)
@@ -30,13 +34,13 @@ fn open_top_functions_agree_with_hand_sums() {
     let places = [[1.05, 0.5], [3.06, 0.5], [1.05, 25.5], [1.05, 26.71]];
     let velocities = [[1.0, 0.0], [-1.0, 2.0], [0.0, -1.0], [3.0, 0.0]];
     let of = |(id, (place, [x, y])): (u32, ([f64; 2], [f64; 2]))| {
-        let mut disc = disc(id, Kind::Grain, place, 0.5);
+        let mut disc = disc(id, ParticleKind::Grain, place, 0.5);
         disc.velocity = [x, y, 0.0];
         disc
     };
     let discs = Particles::new((0..).zip(places.into_iter().zip(velocities)).map(of).collect());
     let domain = Domain::planar([0.0; 2], [10.0, 20.0], [true, false]);
-    let setting = Setting::with_open_top(domain, &discs);
+    let setting = StructureSetting::with_open_top(domain, &discs);
     for (name, at, expected) in [
         // Two discs at random positions along the floor: one pair at the same height, one with a height difference of 1.21.
         ("g(r)", 60, 28.427734870543713),
@@ -86,7 +90,7 @@ fn open_top_functions_agree_with_hand_sums() {
 /// positions.
 #[test]
 fn ideal_gas_below_an_open_top_keeps_heights() {
-    let mut random = Stream::new(9, Purpose::Test, 0);
+    let mut random = Stream::new(9, RandomPurpose::Test, 0);
     let mixture: Vec<f64> = [vec![0.25; 50], vec![1.0; 20]].concat();
     for (periodic, radii) in
         [([true, false], vec![0.5; 90]), ([false; 2], vec![0.5; 90]), ([false; 2], mixture)]

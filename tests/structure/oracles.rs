@@ -3,16 +3,17 @@
 use super::{ideal, values};
 use rand::RngExt;
 use std::f64::consts::TAU;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::particles::Particle;
 use stripmine_physics::structure::{
-    Asks, Look, Motion, OBSERVABLES, Seen, observable, pair_counts, pair_counts_of_all, seen, strides,
+    MotionHistory, OBSERVABLES, SampleData, SamplingKind, StructureSample, observable, pair_counts,
+    pair_counts_of_all, seen, strides,
 };
 
 /// Hexatic order and neighbours of random discs, by a search over all of them: the six nearest sorted by distance, the angle of each.
 #[test]
 fn order_and_neighbours_agree_with_naive_search() {
-    let mut random = Stream::new(2, Purpose::Test, 0);
+    let mut random = Stream::new(2, RandomPurpose::Test, 0);
     for periodic in [[true, true], [true, false], [false, false]] {
         let (setting, discs) = ideal(&mut random, [14.0, 11.0], periodic, 90);
         let discs_of = discs.grains();
@@ -51,7 +52,7 @@ fn order_and_neighbours_agree_with_naive_search() {
 /// A sample of all functions, repeated with the same memory, equals separate samples of each, on any number of threads.
 #[test]
 fn joint_samples_equal_separate_samples() {
-    let mut random = Stream::new(3, Purpose::Test, 0);
+    let mut random = Stream::new(3, RandomPurpose::Test, 0);
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let pools = [1, 3].map(pool);
     for (sides, periodic) in
@@ -59,7 +60,7 @@ fn joint_samples_equal_separate_samples() {
     {
         let (setting, first) = ideal(&mut random, sides, periodic, 2000);
         let all = || OBSERVABLES.iter().filter(|it| periodic[0] || it.name != "S(k)");
-        let mut look = Look::new(setting, &first, all());
+        let mut look = StructureSample::new(setting, &first, all());
         for _ in 0..3 {
             let (_, discs) = ideal(&mut random, sides, periodic, 2000);
             let mut of = |pool: &rayon::ThreadPool| {
@@ -85,11 +86,13 @@ fn joint_samples_equal_separate_samples() {
 /// Waves of random discs, with the sine and cosine of each angle.
 #[test]
 fn waves_agree_with_sines_and_cosines() {
-    let mut random = Stream::new(4, Purpose::Test, 0);
+    let mut random = Stream::new(4, RandomPurpose::Test, 0);
     for periodic in [[true, true], [false, true]] {
         let (setting, discs) = ideal(&mut random, [57.0, 43.0], periodic, 1037);
         let observable = observable("S(k)").unwrap();
-        let Seen::Once { over, asks: Asks::Waves, .. } = observable.seen else { unreachable!() };
+        let SamplingKind::Once { over, asks: SampleData::Waves, .. } = observable.seen else {
+            unreachable!()
+        };
         let vectors = over.places(&setting);
         let [found, _] = seen(observable, setting, &discs);
         // Up to 25 of a diameter there are 226 and 171 waves.
@@ -103,7 +106,7 @@ fn waves_agree_with_sines_and_cosines() {
     }
     // For a long side, the longest 128 waves, and as many others down to the shortest.
     let (setting, discs) = ideal(&mut random, [1000.0, 9.0], [true, false], 10);
-    let Seen::Once { over, .. } = observable("S(k)").unwrap().seen else { unreachable!() };
+    let SamplingKind::Once { over, .. } = observable("S(k)").unwrap().seen else { unreachable!() };
     let periods = over.places(&setting).into_iter().map(|vector| vector[0] * 1000.0 / TAU);
     let periods: Vec<f64> = periods.collect();
     assert_eq!(periods.len(), 256);
@@ -117,7 +120,7 @@ fn waves_agree_with_sines_and_cosines() {
 /// Density, flow and temperature of each slice, computed separately.
 #[test]
 fn profiles_agree_with_naive_slices() {
-    let mut random = Stream::new(5, Purpose::Test, 0);
+    let mut random = Stream::new(5, RandomPurpose::Test, 0);
     let (setting, mut discs) = ideal(&mut random, [30.0, 20.0], [true, false], 400);
     for disc in discs.all_mut() {
         disc.mass = random.random_range(0.5..2.0);
@@ -157,12 +160,12 @@ fn profiles_agree_with_naive_slices() {
 /// Every pair of samples at every lag, with all samples stored; one disc is lost on the way.
 #[test]
 fn motion_agrees_with_all_stored_samples() {
-    let mut random = Stream::new(6, Purpose::Test, 0);
+    let mut random = Stream::new(6, RandomPurpose::Test, 0);
     const DISCS: usize = 23;
     let mut whole: Vec<Vec<[f64; 4]>> = vec![];
     let mut now = [[0.0, 3.0, 0.0, 0.0]; DISCS];
-    let mut motion = Motion::new(DISCS);
-    let lags: Vec<u64> = Motion::lags().collect();
+    let mut motion = MotionHistory::new(DISCS);
+    let lags: Vec<u64> = MotionHistory::lags().collect();
     assert_eq!(lags[..14], [0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20]);
     for look in 0..150_u64 {
         for (disc, state) in now.iter_mut().enumerate() {
@@ -196,7 +199,10 @@ fn motion_agrees_with_all_stored_samples() {
             lags.iter().filter(|&&lag| lag <= look && (look - lag).is_multiple_of(power_of(lag)));
         assert_eq!(met, whole_lags.count(), "{look}");
     }
-    assert_eq!((Motion::most_kept(1), Motion::most_kept(40), Motion::most_kept(80)), (1, 18, 22));
+    assert_eq!(
+        (MotionHistory::most_kept(1), MotionHistory::most_kept(40), MotionHistory::most_kept(80)),
+        (1, 18, 22)
+    );
     assert!((motion.times()[2] - 1.0).abs() < 1e-12);
 }
 
@@ -208,7 +214,7 @@ fn power_of(lag: u64) -> u64 {
 /// Samples are spaced so that they take at most their share of the work, which is counted.
 #[test]
 fn samples_take_at_most_their_share() {
-    let mut random = Stream::new(7, Purpose::Test, 0);
+    let mut random = Stream::new(7, RandomPurpose::Test, 0);
     let (setting, _) = ideal(&mut random, [30.0, 30.0], [true, true], 500);
     let all: Vec<_> = OBSERVABLES.iter().collect();
     let some = [observable("msd").unwrap()];

@@ -2,7 +2,7 @@
 
 /// Boundary of a box along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Side {
+pub enum BoxSide {
     /// Periodic, with its length.
     Periodic(f64),
     /// Closed: nothing may leave; with its length.
@@ -13,13 +13,13 @@ pub enum Side {
     Flat,
 }
 
-impl Side {
+impl BoxSide {
     /// Length of the side: infinite if open, 0 if flat.
     pub const fn length(self) -> f64 {
         match self {
-            Side::Periodic(length) | Side::Closed(length) => length,
-            Side::Open => f64::INFINITY,
-            Side::Flat => 0.0,
+            BoxSide::Periodic(length) | BoxSide::Closed(length) => length,
+            BoxSide::Open => f64::INFINITY,
+            BoxSide::Flat => 0.0,
         }
     }
 }
@@ -30,17 +30,17 @@ pub struct Domain {
     /// Corner with the smallest coordinates (length); coordinates of an open side are relative to it too.
     pub origin: [f64; 3],
     /// Boundary along each axis.
-    pub sides: [Side; 3],
+    pub sides: [BoxSide; 3],
 }
 
 impl Domain {
     /// Rectangle with its lower left corner and sides (length), each pair of sides periodic or closed.
     pub fn planar([x, y]: [f64; 2], sides: [f64; 2], periodic: [bool; 2]) -> Domain {
         let side = |axis: usize| match periodic[axis] {
-            true => Side::Periodic(sides[axis]),
-            false => Side::Closed(sides[axis]),
+            true => BoxSide::Periodic(sides[axis]),
+            false => BoxSide::Closed(sides[axis]),
         };
-        Domain { origin: [x, y, 0.0], sides: [side(0), side(1), Side::Flat] }
+        Domain { origin: [x, y, 0.0], sides: [side(0), side(1), BoxSide::Flat] }
     }
 
     /// Length of a side.
@@ -50,7 +50,7 @@ impl Domain {
 
     /// True if a side is periodic.
     pub fn is_periodic(&self, axis: usize) -> bool {
-        matches!(self.sides[axis], Side::Periodic(_))
+        matches!(self.sides[axis], BoxSide::Periodic(_))
     }
 
     /// Lower left corner of a planar box (length).
@@ -78,7 +78,7 @@ impl Domain {
         std::array::from_fn(|axis| {
             let way = to[axis] - from[axis];
             match self.sides[axis] {
-                Side::Periodic(side) if way.abs() > 0.5 * side => way - (way / side).round() * side,
+                BoxSide::Periodic(side) if way.abs() > 0.5 * side => way - (way / side).round() * side,
                 _ => way,
             }
         })
@@ -95,7 +95,7 @@ impl Domain {
         std::array::from_fn(|axis| {
             let origin = self.origin[axis];
             let along = position[axis] - origin;
-            let Side::Periodic(side) = self.sides[axis] else { return position[axis] };
+            let BoxSide::Periodic(side) = self.sides[axis] else { return position[axis] };
             if (0.0..side).contains(&along) {
                 return position[axis];
             }
@@ -110,7 +110,7 @@ impl Domain {
     pub fn periods<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
         let inside = self.wrapped(position);
         std::array::from_fn(|axis| match self.sides[axis] {
-            Side::Periodic(side) => ((position[axis] - inside[axis]) / side).round(),
+            BoxSide::Periodic(side) => ((position[axis] - inside[axis]) / side).round(),
             _ => 0.0,
         })
     }
@@ -120,9 +120,9 @@ impl Domain {
         (0..D).all(|axis| {
             let from_low = position[axis] - self.origin[axis];
             match self.sides[axis] {
-                Side::Periodic(side) | Side::Closed(side) => from_low >= 0.0 && from_low <= side,
-                Side::Open => true,
-                Side::Flat => from_low == 0.0,
+                BoxSide::Periodic(side) | BoxSide::Closed(side) => from_low >= 0.0 && from_low <= side,
+                BoxSide::Open => true,
+                BoxSide::Flat => from_low == 0.0,
             }
         })
     }
@@ -148,7 +148,8 @@ mod tests {
 
     #[test]
     fn open_space_contains_everything_and_planes_are_flat() {
-        let space = Domain { origin: [0.0; 3], sides: [Side::Open, Side::Periodic(2.0), Side::Open] };
+        let space =
+            Domain { origin: [0.0; 3], sides: [BoxSide::Open, BoxSide::Periodic(2.0), BoxSide::Open] };
         assert!(space.contains([-1e300, 1.0, 7.0]) && !space.contains([0.0, 3.0, 0.0]));
         assert_eq!(space.wrapped([-5.0, 3.0, 9.0]), [-5.0, 1.0, 9.0]);
         assert_eq!(

@@ -1,7 +1,7 @@
 //! Sectors of a box for neighbour searches.
 
 use crate::domain::Domain;
-use stripmine_kernels::sweep::fast::{Grid, GridError};
+use stripmine_kernels::sweep::fast::{CellGrid, GridError};
 
 /// Largest number of sectors for each disc, and a number added for small systems. Beyond it sectors are widened, because an empty sector takes time
 /// in every step too.
@@ -16,13 +16,18 @@ const WIDEST: f64 = 100.0;
 ///
 /// # Errors
 /// [`GridError`] if the box cannot be divided into sectors.
-pub(crate) fn sectors_of(domain: &Domain, reach: f64, single: bool, discs: usize) -> Result<Grid, GridError> {
+pub(crate) fn sectors_of(
+    domain: &Domain,
+    reach: f64,
+    single: bool,
+    discs: usize,
+) -> Result<CellGrid, GridError> {
     let most = SECTORS_A_DISC * discs as f64 + SECTORS_OF_FEW;
     let widest = match single {
         true => (domain.area() / most).sqrt().clamp(2.0 * reach, WIDEST * reach),
         false => f64::INFINITY,
     };
-    Grid::new(domain.corner(), domain.lengths(), domain.periodic(), reach, widest, discs)
+    CellGrid::new(domain.corner(), domain.lengths(), domain.periodic(), reach, widest, discs)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Memory available to this program, the limit that applies, and the memory that a run needs.
 
-use crate::input::{InputErrors, Reason, Spot};
-use crate::ranks::Crew;
+use crate::input::{InputErrors, MistakeKind, Spot};
+use crate::ranks::RankBackend;
 use serde::{Serialize, Serializer};
 use std::fs;
 use stripmine_kernels::isa::aligned_column::taken;
@@ -11,7 +11,7 @@ pub(crate) const PROGRAM: f64 = 17.0e6;
 
 /// Memory that a run needs and memory that is available (bytes).
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Foreseen {
+pub struct MemoryForecast {
     /// Peak memory of the run.
     pub needed: u64,
     /// Memory available; none where the system does not report it.
@@ -24,12 +24,12 @@ pub struct Foreseen {
     pub remedy: &'static str,
     /// Additional memory of several ranks.
     #[serde(skip)]
-    pub ranks: OfRanks,
+    pub ranks: RankMemory,
 }
 
 /// Additional memory of several ranks beside that of one (bytes).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OfRanks {
+pub struct RankMemory {
     /// Gathered discs, on the first rank.
     pub(crate) gathered: f64,
     /// Copies of the whole scene that every rank stores, whatever its part.
@@ -43,12 +43,12 @@ pub struct OfRanks {
 /// Address space of a thread: its stack, and pages that its short arrays share.
 const THREAD: f64 = (2 << 20) as f64 + (4 << 20) as f64;
 
-impl OfRanks {
+impl RankMemory {
     /// Memory of `count` discs in bands, with cells that every rank stores in full (bytes), and rows of the discs.
-    pub(crate) fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> OfRanks {
+    pub(crate) fn in_bands(count: f64, cells: f64, rows: [f64; 2]) -> RankMemory {
         // Gathering: seven words for a disc in transit, six on arrival. Each rank: a row and the periods crossed; the rest is measured overhead of
         // allocators with several threads.
-        OfRanks { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows, threads: 0.0 }
+        RankMemory { gathered: 8.0 * (7.0 + 6.0) * count, each: 50.0 * count + cells, rows, threads: 0.0 }
     }
 
     /// Excess of the rows when split into as many parts (bytes).
@@ -58,31 +58,35 @@ impl OfRanks {
     }
 }
 
-impl Foreseen {
+impl MemoryForecast {
     /// Returns the forecast for another crew than one rank. Processes may run on different machines, so theirs is the most that one process needs.
     #[must_use]
-    pub fn on(self, crew: Crew) -> Foreseen {
+    pub fn on(self, crew: RankBackend) -> MemoryForecast {
         let (more, threads) = match crew {
-            Crew::One | Crew::Threads(..=1) => return self,
-            Crew::Threads(count) => {
+            RankBackend::One | RankBackend::Threads(..=1) => return self,
+            RankBackend::Threads(count) => {
                 let (ranks, others) = (&self.ranks, (count - 1) as f64);
                 let threads = others * (rayon::current_num_threads() + 1) as f64 * THREAD;
                 (ranks.gathered + others * ranks.each + ranks.rounding(count as f64), threads)
             }
-            Crew::Processes(_) => (self.ranks.gathered, 0.0),
+            RankBackend::Processes(_) => (self.ranks.gathered, 0.0),
         };
-        Foreseen { needed: self.needed + more as u64, ranks: OfRanks { threads, ..self.ranks }, ..self }
+        MemoryForecast {
+            needed: self.needed + more as u64,
+            ranks: RankMemory { threads, ..self.ranks },
+            ..self
+        }
     }
 
     /// Returns the forecast with another run in the same process.
     #[must_use]
-    pub fn beside(self, other: &Foreseen) -> Foreseen {
+    pub fn beside(self, other: &MemoryForecast) -> MemoryForecast {
         let needed = self.needed + other.needed.saturating_sub(PROGRAM as u64);
         let what = match self.what == other.what {
             true => format!("{}, twice,", self.what),
             false => format!("{} beside one of {}", self.what, other.what),
         };
-        Foreseen { needed, what, ..self }
+        MemoryForecast { needed, what, ..self }
     }
 
     /// Checks that the run fits into the available memory; `scene` is its name in an error.
@@ -90,9 +94,9 @@ impl Foreseen {
     /// # Errors
     /// [`InputErrors`] with both numbers if the run does not fit.
     pub fn fits(&self, scene: &str) -> Result<(), InputErrors> {
-        let Foreseen { needed, available, what, remedy, ranks } = self;
+        let MemoryForecast { needed, available, what, remedy, ranks } = self;
         // Stacks reserve address space and use little of it.
-        let of_threads = |by| if by == Limit::AddressSpace { ranks.threads as u64 } else { 0 };
+        let of_threads = |by| if by == MemoryLimit::AddressSpace { ranks.threads as u64 } else { 0 };
         match *available {
             Some(Available { bytes, by }) if *needed + of_threads(by) > bytes => {
                 let needed = &(needed + of_threads(by));
@@ -103,7 +107,7 @@ impl Foreseen {
                     by.in_words(),
                     in_words(bytes)
                 );
-                Err(spot.error(Reason::Memory, message).advising(*remedy).into())
+                Err(spot.error(MistakeKind::Memory, message).advising(*remedy).into())
             }
             _ => Ok(()),
         }
@@ -124,7 +128,7 @@ pub struct Available {
     /// Number of bytes.
     pub bytes: u64,
     /// Limit that applies.
-    pub by: Limit,
+    pub by: MemoryLimit,
 }
 
 impl Serialize for Available {
@@ -135,7 +139,7 @@ impl Serialize for Available {
 
 /// Limit on the memory of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limit {
+pub enum MemoryLimit {
     /// The machine's memory.
     Machine,
     /// The share of a control group.
@@ -146,14 +150,14 @@ pub enum Limit {
     Data,
 }
 
-impl Limit {
+impl MemoryLimit {
     /// Limit as the subject of a sentence.
     pub fn in_words(self) -> &'static str {
         match self {
-            Limit::Machine => "this machine",
-            Limit::ControlGroup => "the control group of this process",
-            Limit::AddressSpace => "the limit of the address space (ulimit -v)",
-            Limit::Data => "the limit of the data of a process (ulimit -d)",
+            MemoryLimit::Machine => "this machine",
+            MemoryLimit::ControlGroup => "the control group of this process",
+            MemoryLimit::AddressSpace => "the limit of the address space (ulimit -v)",
+            MemoryLimit::Data => "the limit of the data of a process (ulimit -d)",
         }
     }
 }
@@ -162,8 +166,9 @@ impl Limit {
 /// limits leave less. None where the system does not report it.
 pub(crate) fn available() -> Option<Available> {
     let meminfo = fs::read_to_string("/proc/meminfo").ok()?;
-    let of_machine = Available { bytes: kibibytes(&meminfo, "MemAvailable:")?, by: Limit::Machine };
-    let of_groups = left_of_groups().into_iter().map(|bytes| Available { bytes, by: Limit::ControlGroup });
+    let of_machine = Available { bytes: kibibytes(&meminfo, "MemAvailable:")?, by: MemoryLimit::Machine };
+    let of_groups =
+        left_of_groups().into_iter().map(|bytes| Available { bytes, by: MemoryLimit::ControlGroup });
     let all = of_groups.chain(left_of_process()).chain([of_machine]);
     all.min_by_key(|available| available.bytes)
 }
@@ -177,8 +182,8 @@ fn left_of_process() -> impl Iterator<Item = Available> {
     let [limits, status] =
         ["/proc/self/limits", "/proc/self/status"].map(|file| fs::read_to_string(file).unwrap_or_default());
     let of = [
-        (Limit::AddressSpace, "Max address space", "VmSize:", RESERVED),
-        (Limit::Data, "Max data size", "VmData:", 0),
+        (MemoryLimit::AddressSpace, "Max address space", "VmSize:", RESERVED),
+        (MemoryLimit::Data, "Max data size", "VmData:", 0),
     ];
     of.into_iter().filter_map(move |(by, limit, used, reserved)| {
         let (limit, used) = (soft_limit(&limits, limit)?, kibibytes(&status, used)?);

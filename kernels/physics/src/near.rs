@@ -7,12 +7,12 @@ use std::hash::{BuildHasherDefault, Hasher};
 /// Positions in a box, sorted into squares at least as wide as a search radius. A query visits neighbouring squares only. Memory grows with the
 /// number of positions, not with the box.
 #[derive(Clone, Debug)]
-pub struct Near {
+pub struct NeighbourSearch {
     domain: Domain,
     squares: [f64; 2],
     /// Index of the last member added to a square.
     last: HashMap<[i64; 2], u32, BuildHasherDefault<SquareHasher>>,
-    members: Vec<Member>,
+    members: Vec<SquareMember>,
 }
 
 /// Hash of the two indices of a square. It is several times as fast as a hash that resists an adversary, and nothing depends on the order of the
@@ -35,19 +35,19 @@ impl Hasher for SquareHasher {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Member {
+struct SquareMember {
     number: u32,
     position: [f64; 2],
     /// Member added to the same square before.
     before: Option<u32>,
 }
 
-impl Near {
+impl NeighbourSearch {
     /// Memory of [`Near::among`] for a number of positions (bytes): the members, and the table of squares. The table has a power of two of entries
     /// and keeps an eighth of them empty.
     pub fn bytes(positions: usize) -> usize {
         let entries = (8 * positions / 7 + 1).next_power_of_two();
-        size_of::<Member>() * positions + (size_of::<([i64; 2], u32)>() + 1) * entries
+        size_of::<SquareMember>() * positions + (size_of::<([i64; 2], u32)>() + 1) * entries
     }
 
     /// Empty search for positions closer than `reach` (length).
@@ -55,12 +55,12 @@ impl Near {
         // An integer number of squares fills a side, so that a periodic side closes. 2^30 squares are far more than there are discs. NaN becomes
         // one square.
         let squares = domain.lengths().map(|side| (side / reach).floor().max(1.0).min(2f64.powi(30)));
-        Near { domain, squares, last: HashMap::default(), members: Vec::new() }
+        NeighbourSearch { domain, squares, last: HashMap::default(), members: Vec::new() }
     }
 
     /// Search over these positions, numbered from 0.
     pub fn among(domain: Domain, positions: impl ExactSizeIterator<Item = [f64; 2]>, reach: f64) -> Self {
-        let mut near = Near::new(domain, reach);
+        let mut near = NeighbourSearch::new(domain, reach);
         near.members.reserve_exact(positions.len());
         near.last.reserve(positions.len());
         positions.zip(0..).for_each(|(position, number)| near.add(number, position));
@@ -78,7 +78,7 @@ impl Near {
     /// Adds a wrapped position under a number.
     pub fn add(&mut self, number: u32, position: [f64; 2]) {
         let before = self.last.insert(self.square(position), self.members.len() as u32);
-        self.members.push(Member { number, position, before });
+        self.members.push(SquareMember { number, position, before });
     }
 
     /// Index of a square and of its neighbours along one axis, each once.
@@ -109,12 +109,12 @@ impl Near {
 mod tests {
     use super::*;
     use rand::RngExt;
-    use stripmine_kernels::noise::{Purpose, Stream};
+    use stripmine_kernels::noise::{RandomPurpose, Stream};
 
     /// Compares the search with a test of all pairs, in boxes of one square to many, closed and periodic.
     #[test]
     fn everything_within_reach_is_found_once() {
-        let mut random = Stream::new(1, Purpose::Test, 0);
+        let mut random = Stream::new(1, RandomPurpose::Test, 0);
         for (sides, periodic) in [
             ([10.0, 7.0], [true, true]),
             ([10.0, 1.5], [true, false]),
@@ -129,7 +129,7 @@ mod tests {
                     })
                 })
                 .collect();
-            let near = Near::among(domain, points.iter().copied(), 1.0);
+            let near = NeighbourSearch::among(domain, points.iter().copied(), 1.0);
             for point in &points {
                 let mut found: Vec<u32> = near
                     .of(*point)

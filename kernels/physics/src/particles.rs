@@ -2,7 +2,7 @@
 
 /// Motion of a particle: free or prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Kind {
+pub enum ParticleKind {
     /// Moves under forces and gravity.
     #[default]
     Grain,
@@ -16,7 +16,7 @@ pub struct Particle {
     /// Unique number, constant during a run.
     pub id: u32,
     /// Kind of motion.
-    pub kind: Kind,
+    pub kind: ParticleKind,
     /// Centre (length); the third coordinate is 0 in the plane.
     pub position: [f64; 3],
     /// Velocity (length/time); the third component is 0 in the plane.
@@ -60,7 +60,7 @@ pub struct Particles(Vec<Particle>);
 impl Particles {
     /// Sorts grains before wall discs and keeps the order otherwise.
     pub fn new(mut discs: Vec<Particle>) -> Self {
-        discs.sort_by_key(|disc| disc.kind == Kind::Wall);
+        discs.sort_by_key(|disc| disc.kind == ParticleKind::Wall);
         Particles(discs)
     }
 
@@ -81,7 +81,7 @@ impl Particles {
 
     /// Number of particles that forces move.
     pub fn grain_count(&self) -> usize {
-        self.0.partition_point(|disc| disc.kind == Kind::Grain)
+        self.0.partition_point(|disc| disc.kind == ParticleKind::Grain)
     }
 
     /// Number of particles.
@@ -123,16 +123,16 @@ impl Particles {
 
 /// Planar positions and velocities of a scene's grains, in their order at the start. Made for frequent sampling.
 #[derive(Clone, Debug)]
-pub struct States {
+pub struct GrainStates {
     ids: Vec<u32>,
     /// Index of each id; empty if ids are far larger than the number of grains.
     numbers: Vec<u32>,
     rows: Vec<[f64; 4]>,
 }
 
-impl States {
+impl GrainStates {
     /// Reserves memory for these grains; all are lost until stored.
-    pub fn of(grains: &[Particle]) -> States {
+    pub fn of(grains: &[Particle]) -> GrainStates {
         let ids: Vec<u32> = grains.iter().map(|grain| grain.id).collect();
         let largest = ids.iter().max().map_or(0, |&id| id as usize);
         let mut numbers = vec![];
@@ -140,7 +140,7 @@ impl States {
             numbers = vec![u32::MAX; largest + 1];
             ids.iter().zip(0..).for_each(|(&id, number)| numbers[id as usize] = number);
         }
-        States { rows: vec![[f64::NAN; 4]; ids.len()], ids, numbers }
+        GrainStates { rows: vec![[f64::NAN; 4]; ids.len()], ids, numbers }
     }
 
     /// Memory for a number of grains (bytes).
@@ -216,7 +216,7 @@ pub trait PerParticle {
     }
 
     /// Stores planar positions and velocities of the grains, with positions inside the box.
-    fn states(&self, states: &mut States) {
+    fn states(&self, states: &mut GrainStates) {
         states.take_up(&self.particles());
     }
 

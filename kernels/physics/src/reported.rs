@@ -1,12 +1,12 @@
 //! Errors as shown to a user: class, location and remedy.
 
-use crate::input::{InputErrors, Reason};
+use crate::input::{InputErrors, MistakeKind};
 use crate::io::{FileError, FolderError};
 use std::path::Path;
 
 /// Classes of errors; each has its own exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Class {
+pub enum ErrorClass {
     /// Invalid or refused request.
     Usage,
     /// Mistake in a scene or another input file.
@@ -19,35 +19,40 @@ pub enum Class {
     Checkpoint,
 }
 
-impl Class {
+impl ErrorClass {
     /// All classes.
-    const ALL: [Class; 5] =
-        [Class::Usage, Class::Input, Class::Precondition, Class::InputOutput, Class::Checkpoint];
+    const ALL: [ErrorClass; 5] = [
+        ErrorClass::Usage,
+        ErrorClass::Input,
+        ErrorClass::Precondition,
+        ErrorClass::InputOutput,
+        ErrorClass::Checkpoint,
+    ];
 
     /// Class of an exit code; none if a signal ended the program.
-    pub fn of_exit_code(code: u8) -> Option<Class> {
-        Class::ALL.into_iter().find(|class| class.exit_code() == code)
+    pub fn of_exit_code(code: u8) -> Option<ErrorClass> {
+        ErrorClass::ALL.into_iter().find(|class| class.exit_code() == code)
     }
 
     /// Name in JSON.
     pub fn name(self) -> &'static str {
         match self {
-            Class::Usage => "usage",
-            Class::Input => "input",
-            Class::Precondition => "precondition",
-            Class::InputOutput => "input-output",
-            Class::Checkpoint => "checkpoint",
+            ErrorClass::Usage => "usage",
+            ErrorClass::Input => "input",
+            ErrorClass::Precondition => "precondition",
+            ErrorClass::InputOutput => "input-output",
+            ErrorClass::Checkpoint => "checkpoint",
         }
     }
 
     /// Exit code of the class.
     pub fn exit_code(self) -> u8 {
         match self {
-            Class::Usage => 2,
-            Class::Input => 3,
-            Class::Precondition => 4,
-            Class::InputOutput => 5,
-            Class::Checkpoint => 6,
+            ErrorClass::Usage => 2,
+            ErrorClass::Input => 3,
+            ErrorClass::Precondition => 4,
+            ErrorClass::InputOutput => 5,
+            ErrorClass::Checkpoint => 6,
         }
     }
 }
@@ -73,7 +78,7 @@ impl FilePlace {
 /// Error that is shown to a user.
 pub trait Reported: std::error::Error + Send + Sync {
     /// Class of the error.
-    fn class(&self) -> Class;
+    fn class(&self) -> ErrorClass;
 
     /// Inner error that supplies the mistakes, location, remedy and details not given here.
     fn passed_on(&self) -> Option<&dyn Reported> {
@@ -102,9 +107,9 @@ pub trait Reported: std::error::Error + Send + Sync {
 }
 
 impl Reported for InputErrors {
-    fn class(&self) -> Class {
-        let is_of_system = self.0.iter().any(|error| error.reason == Reason::System);
-        if is_of_system { Class::InputOutput } else { Class::Input }
+    fn class(&self) -> ErrorClass {
+        let is_of_system = self.0.iter().any(|error| error.reason == MistakeKind::System);
+        if is_of_system { ErrorClass::InputOutput } else { ErrorClass::Input }
     }
 
     fn mistakes(&self) -> Option<&InputErrors> {
@@ -113,8 +118,8 @@ impl Reported for InputErrors {
 }
 
 impl Reported for FileError {
-    fn class(&self) -> Class {
-        Class::InputOutput
+    fn class(&self) -> ErrorClass {
+        ErrorClass::InputOutput
     }
 
     fn place(&self) -> Option<FilePlace> {
@@ -123,11 +128,11 @@ impl Reported for FileError {
 }
 
 impl Reported for FolderError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
-            FolderError::List { .. } => Class::Checkpoint,
+            FolderError::List { .. } => ErrorClass::Checkpoint,
             FolderError::File(error) => error.class(),
-            _ => Class::Usage,
+            _ => ErrorClass::Usage,
         }
     }
 

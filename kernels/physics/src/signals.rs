@@ -21,14 +21,14 @@ const PATIENCE: Duration = Duration::from_millis(300);
 
 /// End of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum ProcessEnd {
     /// Every file is complete.
     Whole,
     /// Forced by a second signal: a file may be incomplete.
     Forced,
 }
 
-type LastWords = Box<dyn Fn(End) + Send + Sync>;
+type LastWords = Box<dyn Fn(ProcessEnd) + Send + Sync>;
 
 static LAST_WORDS: OnceLock<LastWords> = OnceLock::new();
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -39,7 +39,7 @@ static HOLDERS: Mutex<usize> = Mutex::new(0);
 ///
 /// # Errors
 /// The system's error.
-pub fn install(last_words: impl Fn(End) + Send + Sync + 'static) -> io::Result<()> {
+pub fn install(last_words: impl Fn(ProcessEnd) + Send + Sync + 'static) -> io::Result<()> {
     LAST_WORDS.get_or_init(|| Box::new(last_words));
     ignoring(|| ctrlc::set_handler(arrived).map_err(io::Error::other))
 }
@@ -72,15 +72,15 @@ pub fn asked() -> &'static AtomicBool {
 
 /// Guard during which a first signal does not end the process; its holder reacts to the signal.
 #[derive(Debug)]
-pub struct Held(());
+pub struct HoldGuard(());
 
 /// Holds the process until the guard is dropped.
-pub fn hold() -> Held {
+pub fn hold() -> HoldGuard {
     *holders() += 1;
-    Held(())
+    HoldGuard(())
 }
 
-impl Drop for Held {
+impl Drop for HoldGuard {
     fn drop(&mut self) {
         *holders() -= 1;
     }
@@ -97,7 +97,7 @@ pub fn whole<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
     drop(held);
     let holders = holders();
     if *holders == 0 && ASKED.load(Ordering::SeqCst) {
-        end(End::Whole);
+        end(ProcessEnd::Whole);
     }
     Ok(done)
 }
@@ -116,14 +116,14 @@ fn arrived() {
     let holders = holders();
     let first = !ASKED.swap(true, Ordering::SeqCst);
     match (*holders, first) {
-        (0, _) => end(End::Whole),
-        (_, false) => end(End::Forced),
+        (0, _) => end(ProcessEnd::Whole),
+        (_, false) => end(ProcessEnd::Forced),
         (_, true) => {}
     }
 }
 
 /// Ends the process; the caller holds the lock of the holders.
-fn end(how: End) -> ! {
+fn end(how: ProcessEnd) -> ! {
     let (done, waiting) = mpsc::channel();
     let words = move || {
         LAST_WORDS.get().inspect(|say| say(how));

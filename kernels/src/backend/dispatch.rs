@@ -1,6 +1,6 @@
 //! Instruction sets, and dispatch of work to a function compiled for one of them.
 
-use super::estimated::Estimating;
+use super::estimated::EstimatingRegisters;
 use super::precision::Precision;
 use super::pulp::Pulp;
 use super::registers::{MAX_LANES, Registers};
@@ -74,7 +74,7 @@ impl InstructionSet {
 
 /// A task compiled once for each register file. Everything between it and the registers must be inlined: a separate function is
 /// compiled for the build's target.
-pub trait Task<L: Precision> {
+pub trait RegisterTask<L: Precision> {
     /// Runs the task on one register file.
     fn on<R: Registers<Lane = L>>(self, registers: R);
 }
@@ -84,7 +84,10 @@ pub trait Task<L: Precision> {
 /// # Errors
 /// [`ProgramError::NoSuchInstructionSet`] if this processor lacks it.
 #[inline]
-pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+pub(crate) fn dispatch<L: Precision, T: RegisterTask<L>>(
+    set: InstructionSet,
+    task: T,
+) -> Result<(), ProgramError> {
     match set {
         InstructionSet::Scalar => task.on(Scalar::default()),
         InstructionSet::Wide => task.on(Wide::default()),
@@ -99,7 +102,10 @@ pub(crate) fn dispatch<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -
 /// # Errors
 /// As for `dispatch`.
 #[inline]
-pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -> Result<(), ProgramError> {
+pub fn dispatch_native<L: Precision, T: RegisterTask<L>>(
+    set: InstructionSet,
+    task: T,
+) -> Result<(), ProgramError> {
     match set {
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
         InstructionSet::Wide => task.on(Wide::default()),
@@ -112,14 +118,14 @@ pub fn dispatch_native<L: Precision, T: Task<L>>(set: InstructionSet, task: T) -
 /// As [`dispatch_native`], on the widest set of this processor.
 #[expect(clippy::unreachable, reason = "an available set is chosen above")]
 #[inline]
-pub fn dispatch_best<L: Precision, T: Task<L>>(task: T) {
+pub fn dispatch_best<L: Precision, T: RegisterTask<L>>(task: T) {
     if let Err(absent) = dispatch_native(InstructionSet::best(), task) {
         unreachable!("{absent}, but the best set is always available");
     }
 }
 
 /// As [`dispatch`], on registers that fuse products and sums and estimate inverse roots, if the set has such instructions.
-pub(crate) fn dispatch_estimating<L: Precision, T: Task<L>, const RAW: bool>(
+pub(crate) fn dispatch_estimating<L: Precision, T: RegisterTask<L>, const RAW: bool>(
     set: InstructionSet,
     task: T,
 ) -> Result<(), ProgramError> {
@@ -147,7 +153,7 @@ fn vectorized(set: InstructionSet, task: impl WithSimd<Output = ()>) -> Result<(
 /// Adapter of a task for `pulp`.
 struct OnSimd<T, L>(T, PhantomData<L>);
 
-impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
+impl<L: Precision, T: RegisterTask<L>> WithSimd for OnSimd<T, L> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
@@ -158,10 +164,10 @@ impl<L: Precision, T: Task<L>> WithSimd for OnSimd<T, L> {
 /// Adapter of a task for `pulp`, on registers that estimate.
 struct OnEstimating<T, L, const RAW: bool>(T, PhantomData<L>);
 
-impl<L: Precision, T: Task<L>, const RAW: bool> WithSimd for OnEstimating<T, L, RAW> {
+impl<L: Precision, T: RegisterTask<L>, const RAW: bool> WithSimd for OnEstimating<T, L, RAW> {
     type Output = ();
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        self.0.on(Estimating::<S, L, RAW>::new(simd));
+        self.0.on(EstimatingRegisters::<S, L, RAW>::new(simd));
     }
 }

@@ -12,7 +12,7 @@
 //! has δ < 2⁻¹⁴ in both precisions, AVX2 δ < 1.5 · 2⁻¹² in single precision only. Without an estimate, root and quotient are the
 //! processor's own.
 
-use super::pulp::{Pulp, PulpElement, Register, Truth};
+use super::pulp::{Pulp, PulpElement, PulpPredicate, PulpRegister};
 use super::registers::Registers;
 use super::values::{implement_operator, implement_vector};
 use crate::isa::Vector;
@@ -24,7 +24,7 @@ use pulp::x86::{V3, V4};
 use std::any::TypeId;
 
 /// A precision with fused operations and estimates.
-pub trait Estimates: PulpElement {
+pub trait EstimatingElement: PulpElement {
     /// `a · b + c`, rounded once.
     fn fused<S: Simd>(simd: S, a: Self::V<S>, b: Self::V<S>, c: Self::V<S>) -> Self::V<S>;
 
@@ -57,7 +57,7 @@ fn on<S: Simd, Set: Simd, R: Copy, Native: Copy>(
     Some(unsafe { std::mem::transmute_copy(&result) })
 }
 
-impl Estimates for f32 {
+impl EstimatingElement for f32 {
     #[inline(always)]
     fn fused<S: Simd>(simd: S, a: S::f32s, b: S::f32s, c: S::f32s) -> S::f32s {
         simd.mul_add_f32s(a, b, c)
@@ -82,7 +82,7 @@ impl Estimates for f32 {
     }
 }
 
-impl Estimates for f64 {
+impl EstimatingElement for f64 {
     #[inline(always)]
     fn fused<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
         simd.mul_add_f64s(a, b, c)
@@ -104,34 +104,34 @@ impl Estimates for f64 {
 
 /// Registers of the instruction set `S` with lanes of `T` that fuse and estimate. If `RAW`, estimates are not corrected.
 #[derive(Clone, Copy)]
-pub(crate) struct Estimating<S, T, const RAW: bool>(Pulp<S, T>, S);
+pub(crate) struct EstimatingRegisters<S, T, const RAW: bool>(Pulp<S, T>, S);
 
-impl<S: Simd, T: Estimates, const RAW: bool> Estimating<S, T, RAW> {
+impl<S: Simd, T: EstimatingElement, const RAW: bool> EstimatingRegisters<S, T, RAW> {
     /// Registers whose existence `simd` proves.
     #[inline(always)]
     pub(super) fn new(simd: S) -> Self {
-        Estimating(Pulp::new(simd), simd)
+        EstimatingRegisters(Pulp::new(simd), simd)
     }
 }
 
 /// One register.
 #[derive(Clone, Copy)]
-pub(crate) struct Estimated<S: Simd, T: PulpElement, const RAW: bool>(S, Register<S, T>);
+pub(crate) struct EstimatedVector<S: Simd, T: PulpElement, const RAW: bool>(S, PulpRegister<S, T>);
 
-impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW> {
+impl<S: Simd, T: EstimatingElement, const RAW: bool> Registers for EstimatingRegisters<S, T, RAW> {
     type Lane = T;
-    type V = Estimated<S, T, RAW>;
+    type V = EstimatedVector<S, T, RAW>;
     type Index = T::Index;
     const LANES: usize = Pulp::<S, T>::LANES;
 
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
-        Estimated(self.1, self.0.splat(value))
+        EstimatedVector(self.1, self.0.splat(value))
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
         // SAFETY: the caller promises LANES numbers, and the register inside has as many lanes.
-        Estimated(self.1, unsafe { self.0.load(from) })
+        EstimatedVector(self.1, unsafe { self.0.load(from) })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
@@ -139,11 +139,11 @@ impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW>
         unsafe { self.0.store(to, value.1) };
     }
     #[inline(always)]
-    fn none(self, predicate: Truth<S, T>) -> bool {
+    fn none(self, predicate: PulpPredicate<S, T>) -> bool {
         self.0.none(predicate)
     }
     #[inline(always)]
-    fn bits(self, predicate: Truth<S, T>) -> u64 {
+    fn bits(self, predicate: PulpPredicate<S, T>) -> u64 {
         self.0.bits(predicate)
     }
 }
@@ -151,43 +151,43 @@ impl<S: Simd, T: Estimates, const RAW: bool> Registers for Estimating<S, T, RAW>
 /// Forwards an operation to the register inside.
 macro_rules! of_register {
     (() V merge $op:ident $f:ident ($predicate:ident $a:ident $b:ident) $result:tt) => {
-        Estimated($a.0, Register::$f($predicate, $a.1, $b.1))
+        EstimatedVector($a.0, PulpRegister::$f($predicate, $a.1, $b.1))
     };
     (() V $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
-        Estimated($a.0, $a.1.$f($($b.1)*))
+        EstimatedVector($a.0, $a.1.$f($($b.1)*))
     };
     (() P $group:ident $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
         $a.1.$f($b.1)
     };
 }
-for_each_op!(each implement_operator ([S: Simd, T: Estimates, const RAW: bool] Estimated<S, T, RAW>, of_register ()));
+for_each_op!(each implement_operator ([S: Simd, T: EstimatingElement, const RAW: bool] EstimatedVector<S, T, RAW>, of_register ()));
 
-impl<S: Simd, T: Estimates, const RAW: bool> Vector for Estimated<S, T, RAW> {
-    type Predicate = Truth<S, T>;
+impl<S: Simd, T: EstimatingElement, const RAW: bool> Vector for EstimatedVector<S, T, RAW> {
+    type Predicate = PulpPredicate<S, T>;
     for_each_op!(each implement_vector (of_register ()));
 
     #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         let value = T::fused(self.0, self.1.value(), factor.1.value(), addend.1.value());
-        Estimated(self.0, Register::new(self.0, value))
+        EstimatedVector(self.0, PulpRegister::new(self.0, value))
     }
     #[inline(always)]
     fn times_from(self, factor: Self, addend: Self) -> Self {
         let value = T::fused_from(self.0, self.1.value(), factor.1.value(), addend.1.value());
-        Estimated(self.0, Register::new(self.0, value))
+        EstimatedVector(self.0, PulpRegister::new(self.0, value))
     }
     #[inline(always)]
     fn inverse_three_halves(self, one: Self) -> Self {
         let Some((root, terms)) = T::inverse_root(self.0, self.1.value()) else {
             return one / (self * self.sqrt());
         };
-        let root = Estimated(self.0, Register::new(self.0, root));
+        let root = EstimatedVector(self.0, PulpRegister::new(self.0, root));
         let square = root * root;
         if RAW {
             return square * root;
         }
         let error = self.times_from(square, one);
-        let registers = Estimating::<S, T, RAW>::new(self.0);
+        let registers = EstimatingRegisters::<S, T, RAW>::new(self.0);
         let term = |k: usize| registers.splat(T::from_f64(terms[k]));
         let correction = match terms.len() {
             1 => term(0),

@@ -12,12 +12,12 @@ mod wide;
 
 pub(crate) use dispatch::dispatch_estimating;
 pub(crate) use dispatch::{GROUP, dispatch};
-pub use dispatch::{InstructionSet, Task, dispatch_best, dispatch_native};
-pub use estimated::Estimates;
+pub use dispatch::{InstructionSet, RegisterTask, dispatch_best, dispatch_native};
+pub use estimated::EstimatingElement;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};
 pub(crate) use registers::Strip;
 pub use registers::{IndexLanes, Registers};
 pub use scalar::Scalar;
-pub use tape::{Line, Listing, Tape};
+pub use tape::{ListingLine, Tape, TapeListing};
 pub use wide::{Wide, WideElement};

@@ -1,7 +1,7 @@
 //! Precisions of kernels.
 
 use super::dispatch::InstructionSet;
-use super::estimated::Estimates;
+use super::estimated::EstimatingElement;
 use super::tape::Tape;
 use super::wide::WideElement;
 use crate::isa::{Memory, ProgramError};
@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// A precision supported by every register file. The interpreter of tapes is compiled here, once per precision, and not in every
 /// crate that has a kernel.
-pub trait Precision: Estimates + WideElement {
+pub trait Precision: EstimatingElement + WideElement {
     /// As [`Tape::interpret`].
     #[doc(hidden)]
     fn interpret(

@@ -43,20 +43,20 @@ pub trait PulpElement: Element {
 /// Forwards an operation of registers to their elements.
 macro_rules! of_element {
     (() V $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
-        Register($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
+        PulpRegister($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
     };
     (() P $group:ident $op:ident $f:ident ($a:ident $($b:ident)*) $result:tt) => {
-        Truth($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
+        PulpPredicate($a.0, <T as PulpElement>::$f($a.0, $a.1 $(, $b.1)*))
     };
 }
-for_each_op!(each implement_operator ([S: Simd, T: PulpElement] Register<S, T>, of_element ()));
+for_each_op!(each implement_operator ([S: Simd, T: PulpElement] PulpRegister<S, T>, of_element ()));
 
-impl<S: Simd, T: PulpElement> Vector for Register<S, T> {
-    type Predicate = Truth<S, T>;
+impl<S: Simd, T: PulpElement> Vector for PulpRegister<S, T> {
+    type Predicate = PulpPredicate<S, T>;
     for_each_op!(each implement_vector (of_element ()));
 }
 
-impl<S: Simd, T: PulpElement> Predicate for Truth<S, T> {
+impl<S: Simd, T: PulpElement> Predicate for PulpPredicate<S, T> {
     for_each_op!(each implement_predicate (of_element ()));
 }
 
@@ -195,13 +195,13 @@ impl<S: Simd, T: PulpElement> Pulp<S, T> {
 
 /// One register.
 #[derive(Clone, Copy)]
-pub struct Register<S: Simd, T: PulpElement>(S, T::V<S>);
+pub struct PulpRegister<S: Simd, T: PulpElement>(S, T::V<S>);
 
-impl<S: Simd, T: PulpElement> Register<S, T> {
+impl<S: Simd, T: PulpElement> PulpRegister<S, T> {
     /// Wraps a register of `pulp`.
     #[inline(always)]
     pub(super) fn new(simd: S, value: T::V<S>) -> Self {
-        Register(simd, value)
+        PulpRegister(simd, value)
     }
 
     /// The register of `pulp` inside.
@@ -213,23 +213,23 @@ impl<S: Simd, T: PulpElement> Register<S, T> {
 
 /// One register of truth values.
 #[derive(Clone, Copy)]
-pub struct Truth<S: Simd, T: PulpElement>(S, T::P<S>);
+pub struct PulpPredicate<S: Simd, T: PulpElement>(S, T::P<S>);
 
 impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     type Lane = T;
-    type V = Register<S, T>;
+    type V = PulpRegister<S, T>;
     type Index = T::Index;
     const LANES: usize = size_of::<T::V<S>>() / T::BYTES;
 
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
-        Register(self.simd, T::splat(self.simd, value))
+        PulpRegister(self.simd, T::splat(self.simd, value))
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
         // SAFETY: the caller promises LANES initialised numbers; a register consists of just those, allows any bits, and is read
         // unaligned.
-        Register(self.simd, unsafe { from.cast::<T::V<S>>().read_unaligned() })
+        PulpRegister(self.simd, unsafe { from.cast::<T::V<S>>().read_unaligned() })
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
@@ -237,11 +237,11 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
         unsafe { to.cast::<T::V<S>>().write_unaligned(value.1) };
     }
     #[inline(always)]
-    fn none(self, predicate: Truth<S, T>) -> bool {
+    fn none(self, predicate: PulpPredicate<S, T>) -> bool {
         T::none(self.simd, predicate.1)
     }
     #[inline(always)]
-    fn bits(self, predicate: Truth<S, T>) -> u64 {
+    fn bits(self, predicate: PulpPredicate<S, T>) -> u64 {
         <T as PulpElement>::bits(self.simd, predicate.1)
     }
 }

@@ -1,7 +1,7 @@
 //! Machine over registers: one implementation of every instruction for any register file.
 
 use crate::isa::list::for_each_op;
-use crate::isa::{Column, Counter, Element, Machine, Memory, Slot, Storage, Vector, same};
+use crate::isa::{ArrayColumn, Element, LaneCounter, Machine, Memory, Slot, Storage, Vector, same};
 use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
@@ -103,18 +103,18 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    fn place<T: Storage>(self, column: Column<T>, shift: isize) -> *mut T {
+    fn place<T: Storage>(self, column: ArrayColumn<T>, shift: isize) -> *mut T {
         // SAFETY: the memory was admitted for the footprint, so base + shift and the lanes behind it exist.
         unsafe { column.at(self.base.wrapping_add_signed(shift)) }
     }
 
     #[inline(always)]
-    pub(crate) fn load<T: Element>(self, column: Column<T>) -> R::V {
+    pub(crate) fn load<T: Element>(self, column: ArrayColumn<T>) -> R::V {
         self.load_shifted(column, 0)
     }
 
     #[inline(always)]
-    pub(crate) fn load_shifted<T: Element>(self, column: Column<T>, shift: isize) -> R::V {
+    pub(crate) fn load_shifted<T: Element>(self, column: ArrayColumn<T>, shift: isize) -> R::V {
         let from = self.place(column, shift);
         if same::<T, R::Lane>() {
             // SAFETY: T is Lane, and the admitted footprint covers the LANES elements from base + shift on.
@@ -126,7 +126,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn store<T: Element>(self, column: Column<T>, value: R::V) {
+    pub(crate) fn store<T: Element>(self, column: ArrayColumn<T>, value: R::V) {
         let to = self.place(column, 0);
         if same::<T, R::Lane>() {
             // SAFETY: T is Lane, and the admitted footprint marks the LANES elements from base on as written.
@@ -138,7 +138,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn gather<T: Element>(self, column: Column<T>, index: R::Index, elsewhere: R::V) -> R::V {
+    pub(crate) fn gather<T: Element>(self, column: ArrayColumn<T>, index: R::Index, elsewhere: R::V) -> R::V {
         let mut spill = Spill::new();
         // SAFETY: the spill has space for MAX_LANES >= LANES elements.
         unsafe { self.registers.store(spill.start(), elsewhere) };
@@ -160,7 +160,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn load_index(self, column: Column<u32>) -> R::Index {
+    pub(crate) fn load_index(self, column: ArrayColumn<u32>) -> R::Index {
         let from = self.place(column, 0);
         let mut index = R::Index::none();
         for lane in 0..R::LANES {
@@ -171,7 +171,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn store_index(self, column: Column<u32>, value: R::Index) {
+    pub(crate) fn store_index(self, column: ArrayColumn<u32>, value: R::Index) {
         let to = self.place(column, 0);
         for lane in 0..R::LANES {
             // SAFETY: lane < LANES, and the admitted footprint marks the LANES elements from base on as written.
@@ -180,7 +180,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn gather_index(self, column: Column<u32>, index: R::Index) -> R::Index {
+    pub(crate) fn gather_index(self, column: ArrayColumn<u32>, index: R::Index) -> R::Index {
         let mut gathered = R::Index::none();
         for lane in 0..R::LANES {
             let number = index.lane(lane);
@@ -192,7 +192,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn scatter_index(self, column: Column<u32>, index: R::Index, value: R::Index) {
+    pub(crate) fn scatter_index(self, column: ArrayColumn<u32>, index: R::Index, value: R::Index) {
         for lane in 0..R::LANES {
             let number = index.lane(lane);
             if number != 0 {
@@ -202,7 +202,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn scatter<T: Element>(self, column: Column<T>, index: R::Index, value: R::V) {
+    pub(crate) fn scatter<T: Element>(self, column: ArrayColumn<T>, index: R::Index, value: R::V) {
         self.disperse(value, |lane, number| {
             let place = index.lane(lane);
             if place != 0 {
@@ -230,7 +230,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     }
 
     #[inline(always)]
-    pub(crate) fn count(self, counter: Counter, predicate: <R::V as Vector>::Predicate) {
+    pub(crate) fn count(self, counter: LaneCounter, predicate: <R::V as Vector>::Predicate) {
         if self.none(predicate) {
             return; // Counted events are rare.
         }

@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 /// A precision with a register in `wide`.
 pub trait WideElement: Element {
     /// Register of 256 bits on every processor.
-    type Register: WideRegister<Self>;
+    type WideVector: WideRegister<Self>;
     /// Index vector of the same width.
     type Index: IndexLanes;
 }
@@ -27,11 +27,11 @@ pub trait WideRegister<T>: Vector {
 
 /// One register.
 #[derive(Clone, Copy)]
-pub struct Register<W>(W);
+pub struct WideVector<W>(W);
 
 /// One register of truth values: all bits of a lane set or clear.
 #[derive(Clone, Copy)]
-pub struct Truth<W>(W);
+pub struct WidePredicate<W>(W);
 
 /// Registers of 256 bits.
 #[derive(Clone, Copy, Default)]
@@ -41,10 +41,10 @@ pub struct Wide<T>(PhantomData<T>);
 #[rustfmt::skip]
 macro_rules! of_wide {
     (($ty:ident $wide:ident) V $group:ident $op:ident $f:ident ($($a:ident)*) $result:tt) => {
-        Register(of_wide!($op $ty $wide $(($a.0))*))
+        WideVector(of_wide!($op $ty $wide $(($a.0))*))
     };
     (($ty:ident $wide:ident) P $group:ident $op:ident $f:ident ($($a:ident)*) $result:tt) => {
-        Truth(of_wide!($op $ty $wide $(($a.0))*))
+        WidePredicate(of_wide!($op $ty $wide $(($a.0))*))
     };
     (Add $ty:ident $wide:ident $a:tt $b:tt) => { $a + $b };
     (Subtract $ty:ident $wide:ident $a:tt $b:tt) => { $a - $b };
@@ -71,34 +71,34 @@ macro_rules! of_wide {
 
 macro_rules! wide_element {
     ($ty:ident, $wide:ident, $lanes:literal) => {
-        for_each_op!(each implement_operator ([] Register<$wide>, of_wide ($ty $wide)));
+        for_each_op!(each implement_operator ([] WideVector<$wide>, of_wide ($ty $wide)));
 
-        impl Vector for Register<$wide> {
-            type Predicate = Truth<$wide>;
+        impl Vector for WideVector<$wide> {
+            type Predicate = WidePredicate<$wide>;
             for_each_op!(each implement_vector (of_wide ($ty $wide)));
         }
 
-        impl Predicate for Truth<$wide> {
+        impl Predicate for WidePredicate<$wide> {
             for_each_op!(each implement_predicate (of_wide ($ty $wide)));
         }
 
-        impl WideRegister<$ty> for Register<$wide> {
+        impl WideRegister<$ty> for WideVector<$wide> {
             #[inline(always)]
             fn splat(value: $ty) -> Self {
-                Register($wide::splat(value))
+                WideVector($wide::splat(value))
             }
             #[inline(always)]
-            fn none(predicate: Truth<$wide>) -> bool {
+            fn none(predicate: WidePredicate<$wide>) -> bool {
                 !predicate.0.any()
             }
             #[inline(always)]
-            fn bits(predicate: Truth<$wide>) -> u64 {
+            fn bits(predicate: WidePredicate<$wide>) -> u64 {
                 predicate.0.to_bitmask().into()
             }
         }
 
         impl WideElement for $ty {
-            type Register = Register<$wide>;
+            type WideVector = WideVector<$wide>;
             type Index = [u32; $lanes];
         }
     };
@@ -108,31 +108,31 @@ wide_element!(f32, f32x8, 8);
 
 impl<T: WideElement> Registers for Wide<T> {
     type Lane = T;
-    type V = T::Register;
+    type V = T::WideVector;
     type Index = T::Index;
-    const LANES: usize = size_of::<T::Register>() / T::BYTES;
+    const LANES: usize = size_of::<T::WideVector>() / T::BYTES;
 
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
-        T::Register::splat(value)
+        T::WideVector::splat(value)
     }
     #[inline(always)]
     unsafe fn load(self, from: *const T) -> Self::V {
         // SAFETY: the caller promises LANES initialised numbers; a register consists of just those, allows any bits, and is read
         // unaligned.
-        unsafe { from.cast::<T::Register>().read_unaligned() }
+        unsafe { from.cast::<T::WideVector>().read_unaligned() }
     }
     #[inline(always)]
     unsafe fn store(self, to: *mut T, value: Self::V) {
         // SAFETY: the caller promises space for LANES numbers; a register consists of just those, and is written unaligned.
-        unsafe { to.cast::<T::Register>().write_unaligned(value) };
+        unsafe { to.cast::<T::WideVector>().write_unaligned(value) };
     }
     #[inline(always)]
-    fn none(self, predicate: <T::Register as Vector>::Predicate) -> bool {
-        T::Register::none(predicate)
+    fn none(self, predicate: <T::WideVector as Vector>::Predicate) -> bool {
+        T::WideVector::none(predicate)
     }
     #[inline(always)]
-    fn bits(self, predicate: <T::Register as Vector>::Predicate) -> u64 {
-        T::Register::bits(predicate)
+    fn bits(self, predicate: <T::WideVector as Vector>::Predicate) -> u64 {
+        T::WideVector::bits(predicate)
     }
 }

@@ -7,12 +7,12 @@ mod partners;
 
 use crate::backend::{Registers, Scalar};
 use crate::isa::{Predicate, Vector};
-pub use partners::{Earliest, MOST_PARTNERS, ROW_UNIT, earliest};
+pub use partners::{EarliestCollision, MOST_PARTNERS, ROW_UNIT, earliest};
 
 /// State of a disc after its last event, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct Disc {
+pub struct FlyingDisc {
     /// Centre at its local time, inside the box along periodic sides (length).
     pub position: [f64; 2],
     /// Velocity at its local time (length/time).
@@ -37,19 +37,19 @@ pub struct Space {
     /// Acceleration of all discs (length/time²); `None` if they fly straight.
     gravity: Option<[f64; 2]>,
     /// Growth of the radii, if any.
-    growth: Option<Growth>,
+    growth: Option<RadiusGrowth>,
 }
 
 /// Growth of the discs: radii are multiplied by a scale that is linear in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Growth {
+pub struct RadiusGrowth {
     /// Scale at time 0.
     pub from: f64,
     /// Growth rate of the scale (1/time).
     pub rate: f64,
 }
 
-impl Growth {
+impl RadiusGrowth {
     /// Scale at a time.
     #[inline(always)]
     pub fn scale(&self, time: f64) -> f64 {
@@ -71,13 +71,13 @@ impl Space {
 
     /// Copy of the space for growing discs.
     #[inline]
-    pub fn growing(self, growth: Growth) -> Space {
+    pub fn growing(self, growth: RadiusGrowth) -> Space {
         Space { growth: Some(growth), ..self }
     }
 
     /// Growth of the radii, if any.
     #[inline(always)]
-    pub fn growth(&self) -> Option<Growth> {
+    pub fn growth(&self) -> Option<RadiusGrowth> {
         self.growth
     }
 
@@ -88,17 +88,17 @@ impl Space {
     }
 }
 
-impl Disc {
+impl FlyingDisc {
     /// Position at a time without events until then (length); it may be beyond periodic sides.
     #[inline(always)]
     pub fn at(&self, space: &Space, time: f64) -> [f64; 2] {
-        Flight::of(self).at(Scalar::default(), space, time).0
+        FlightState::of(self).at(Scalar::default(), space, time).0
     }
 
     /// Velocity at that time (length/time).
     #[inline(always)]
     pub fn velocity_at(&self, space: &Space, time: f64) -> [f64; 2] {
-        Flight::of(self).at(Scalar::default(), space, time).1
+        FlightState::of(self).at(Scalar::default(), space, time).1
     }
 
     /// Speed at its local time (length/time).
@@ -110,22 +110,22 @@ impl Disc {
 
 /// Quantities of a disc that determine its collisions.
 #[derive(Clone, Copy)]
-struct Flight<V> {
+struct FlightState<V> {
     position: [V; 2],
     velocity: [V; 2],
     time: V,
     radius: V,
 }
 
-impl Flight<f64> {
+impl FlightState<f64> {
     #[inline(always)]
-    fn of(disc: &Disc) -> Self {
-        let Disc { position, velocity, time, radius, .. } = *disc;
-        Flight { position, velocity, time, radius }
+    fn of(disc: &FlyingDisc) -> Self {
+        let FlyingDisc { position, velocity, time, radius, .. } = *disc;
+        FlightState { position, velocity, time, radius }
     }
 }
 
-impl<V: Vector> Flight<V> {
+impl<V: Vector> FlightState<V> {
     /// Position and velocity at a time.
     #[inline(always)]
     fn at<R: Registers<Lane = f64, V = V>>(&self, registers: R, space: &Space, time: V) -> ([V; 2], [V; 2]) {
@@ -146,8 +146,8 @@ impl<V: Vector> Flight<V> {
 /// they clearly do not before the `horizon` (time). Across periodic sides, the images that are nearest at `now` collide. The time
 /// is computed from the later of the two local times, so it depends neither on the time of the query nor on the order of the two.
 #[inline(always)]
-pub fn meeting(space: &Space, a: &Disc, b: &Disc, now: f64, horizon: f64) -> f64 {
-    meetings(Scalar::default(), space, &Flight::of(a), &Flight::of(b), now, horizon)
+pub fn meeting(space: &Space, a: &FlyingDisc, b: &FlyingDisc, now: f64, horizon: f64) -> f64 {
+    meetings(Scalar::default(), space, &FlightState::of(a), &FlightState::of(b), now, horizon)
 }
 
 /// Implementation of [`meeting`] for a register of pairs.
@@ -155,8 +155,8 @@ pub fn meeting(space: &Space, a: &Disc, b: &Disc, now: f64, horizon: f64) -> f64
 fn meetings<R: Registers<Lane = f64>>(
     registers: R,
     space: &Space,
-    a: &Flight<R::V>,
-    b: &Flight<R::V>,
+    a: &FlightState<R::V>,
+    b: &FlightState<R::V>,
     now: f64,
     horizon: f64,
 ) -> R::V {
@@ -215,13 +215,13 @@ fn meetings<R: Registers<Lane = f64>>(
 mod tests {
     use super::*;
 
-    fn disc(position: [f64; 2], velocity: [f64; 2]) -> Disc {
-        Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
+    fn disc(position: [f64; 2], velocity: [f64; 2]) -> FlyingDisc {
+        FlyingDisc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
     }
 
     const PERIODIC: [Option<f64>; 2] = [Some(20.0); 2];
 
-    fn when(space: &Space, a: &Disc, b: &Disc) -> f64 {
+    fn when(space: &Space, a: &FlyingDisc, b: &FlyingDisc) -> f64 {
         meeting(space, a, b, 0.0, f64::INFINITY)
     }
 
@@ -254,7 +254,7 @@ mod tests {
     /// Discs at rest collide by growing, as do discs that separate more slowly than they grow; others do not.
     #[test]
     fn growing_discs_collide_sooner() {
-        let growing = |rate: f64| Space::new([None; 2], [0.0; 2]).growing(Growth { from: 0.5, rate });
+        let growing = |rate: f64| Space::new([None; 2], [0.0; 2]).growing(RadiusGrowth { from: 0.5, rate });
         let (a, b) = (disc([0.0; 2], [0.0; 2]), disc([1.0, 0.0], [0.0; 2]));
         assert_eq!(when(&growing(0.25), &a, &b), 2.0);
         let leaving = disc([1.0, 0.0], [0.2, 0.0]);
@@ -272,7 +272,7 @@ mod tests {
         assert_eq!(when(&falling, &a, &b), 2.0);
         // The same flight, from a later moment of one of the discs.
         let (position, velocity) = (b.at(&falling, 0.5), b.velocity_at(&falling, 0.5));
-        let later = Disc { position, velocity, time: 0.5, ..b };
+        let later = FlyingDisc { position, velocity, time: 0.5, ..b };
         assert!((when(&falling, &a, &later) - 2.0).abs() < 1e-15);
         assert_eq!(a.at(&falling, 2.0), [0.0, 5.0]);
     }

@@ -1,6 +1,6 @@
 //! Next collision of a disc among all its partners, one register of partners at a time.
 
-use super::{Disc, Flight, Space, meetings};
+use super::{FlightState, FlyingDisc, Space, meetings};
 use crate::backend::Registers;
 use crate::isa::{Predicate, Vector};
 
@@ -12,7 +12,7 @@ pub const ROW_UNIT: usize = 16;
 
 /// The earliest collision of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Earliest {
+pub struct EarliestCollision {
     /// Time of the first collision; infinite if there is none.
     pub time: f64,
     /// Partners that collide at that time, one bit each.
@@ -32,18 +32,18 @@ pub struct Earliest {
 pub fn earliest<R: Registers<Lane = f64>>(
     registers: R,
     space: &Space,
-    discs: &[Disc],
+    discs: &[FlyingDisc],
     known: &[f64],
     (own, row, count): (u32, &[u32], usize),
     now: f64,
     times: &mut [f64; MOST_PARTNERS],
-) -> Earliest {
+) -> EarliestCollision {
     let is_whole = row.len() <= MOST_PARTNERS && row.len().is_multiple_of(ROW_UNIT);
     assert!(is_whole && count <= row.len(), "{count} partners in a row of {}", row.len());
     let known = &known[..discs.len()];
     let disc = &discs[own as usize];
     let splat = |value: f64| registers.splat(value);
-    let flight = Flight {
+    let flight = FlightState {
         position: disc.position.map(splat),
         velocity: disc.velocity.map(splat),
         time: splat(disc.time),
@@ -58,7 +58,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
             numbers[lane] = some[lane] as usize;
         }
         let by_lane = |of: &dyn Fn(usize) -> f64| {
-            let mut lanes = Lanes([0.0; 16]);
+            let mut lanes = LaneBuffer([0.0; 16]);
             for lane in 0..R::LANES {
                 lanes.0[lane] = of(lane);
             }
@@ -66,7 +66,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
             unsafe { registers.load(lanes.0.as_ptr()) }
         };
         let column = |of: &dyn Fn(usize) -> f64| by_lane(&|lane| of(numbers[lane]));
-        let others = Flight {
+        let others = FlightState {
             position: [column(&|it| discs[it].position[0]), column(&|it| discs[it].position[1])],
             velocity: [column(&|it| discs[it].velocity[0]), column(&|it| discs[it].velocity[1])],
             time: column(&|it| discs[it].time),
@@ -83,7 +83,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
         surprised |= registers.bits(sooner) << begin;
         least = least.min(met);
     }
-    let mut lanes = Lanes([f64::INFINITY; 16]);
+    let mut lanes = LaneBuffer([f64::INFINITY; 16]);
     // SAFETY: there are sixteen numbers, and a register has at most that many lanes.
     unsafe { registers.store(lanes.0.as_mut_ptr(), least) };
     let time = smallest(&lanes.0, R::LANES);
@@ -95,7 +95,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
             first |= registers.bits(met.equal(splat(time))) << begin;
         }
     }
-    Earliest { time, partners: first, surprised }
+    EarliestCollision { time, partners: first, surprised }
 }
 
 /// Smallest of the first `count` numbers, by repeated halving.
@@ -115,45 +115,45 @@ fn smallest(numbers: &[f64; 16], count: usize) -> f64 {
 
 /// Lower bounds of collision times: 0 for partners, then infinity for absent ones. A row reads it from the entry that matches its
 /// length.
-static ABSENT: Absent = {
+static ABSENT: AbsentPartners = {
     let mut soonest = [0.0; 2 * ROW_UNIT];
     let mut lane = ROW_UNIT;
     while lane < soonest.len() {
         soonest[lane] = f64::INFINITY;
         lane += 1;
     }
-    Absent(soonest)
+    AbsentPartners(soonest)
 };
 
 /// Aligned array of two row units.
 #[repr(align(64))]
-struct Absent([f64; 2 * ROW_UNIT]);
+struct AbsentPartners([f64; 2 * ROW_UNIT]);
 
 /// Aligned buffer of a register's numbers.
 #[repr(align(64))]
-struct Lanes([f64; 16]);
+struct LaneBuffer([f64; 16]);
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Growth, meeting};
+    use super::super::{RadiusGrowth, meeting};
     use super::*;
-    use crate::backend::{InstructionSet, Task, dispatch_native};
-    use crate::noise::{Purpose, Stream};
+    use crate::backend::{InstructionSet, RegisterTask, dispatch_native};
+    use crate::noise::{RandomPurpose, Stream};
     use rand::RngExt;
 
-    struct Search<'a> {
+    struct PartnerSearch<'a> {
         space: &'a Space,
-        discs: &'a [Disc],
+        discs: &'a [FlyingDisc],
         known: &'a [f64],
         partners: (&'a [u32], usize),
         times: &'a mut [f64; MOST_PARTNERS],
-        found: &'a mut Option<Earliest>,
+        found: &'a mut Option<EarliestCollision>,
     }
 
-    impl Task<f64> for Search<'_> {
+    impl RegisterTask<f64> for PartnerSearch<'_> {
         #[inline(always)]
         fn on<R: Registers<Lane = f64>>(self, registers: R) {
-            let Search { space, discs, known, partners, times, found } = self;
+            let PartnerSearch { space, discs, known, partners, times, found } = self;
             *found = Some(earliest(registers, space, discs, known, (0, partners.0, partners.1), 3.0, times));
         }
     }
@@ -161,15 +161,15 @@ mod tests {
     /// Bit-equal to the result for each pair, on every instruction set.
     #[test]
     fn rows_of_partners_match_single_pairs() {
-        let mut stream = Stream::new(3, Purpose::Test, 0);
+        let mut stream = Stream::new(3, RandomPurpose::Test, 0);
         let mut meetings = 0;
         for (gravity, rate) in [([0.0; 2], 0.0), ([0.5, -1.0], 0.0), ([0.0; 2], 0.3)] {
             let space = Space::new([Some(12.0), None], gravity);
-            let space = if rate > 0.0 { space.growing(Growth { from: 0.5, rate }) } else { space };
+            let space = if rate > 0.0 { space.growing(RadiusGrowth { from: 0.5, rate }) } else { space };
             for count in [1usize, 2, 7, 8, 9, 16, 31, 64] {
                 let mut draw = |low: f64, high: f64| stream.random_range(low..high);
-                let discs: Vec<Disc> = (0..=count)
-                    .map(|_| Disc {
+                let discs: Vec<FlyingDisc> = (0..=count)
+                    .map(|_| FlyingDisc {
                         position: [draw(0.0, 12.0), draw(0.0, 12.0)],
                         velocity: [draw(-1.0, 1.0), draw(-1.0, 1.0)],
                         time: draw(0.0, 3.0),
@@ -191,7 +191,7 @@ mod tests {
                     let (space, discs, known, partners) = (&space, &discs, &known, partners);
                     let mut found = None;
                     let search =
-                        Search { space, discs, known, partners, times: &mut times, found: &mut found };
+                        PartnerSearch { space, discs, known, partners, times: &mut times, found: &mut found };
                     dispatch_native(set, search).unwrap();
                     (found.unwrap(), times[..count].to_vec())
                 };

@@ -5,7 +5,7 @@
 
 use super::{Context, DERIVATIVES, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
 use crate::backend::Registers;
-use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
+use crate::isa::{Array, Element, Kernel, Machine, Predicate, Slot, Vector};
 use std::marker::PhantomData;
 
 /// Arrays of the state, a row for each degree of freedom: the position and its derivatives, scaled as the scheme requires.
@@ -135,22 +135,24 @@ fn row<S: Element, M: Machine, const VALUES: usize>(m: M, freedom: usize) -> [M:
 ///
 /// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
 #[derive(Clone, Copy, Debug)]
-pub struct Predictor<S, P, const VALUES: usize, const FREEDOMS: usize> {
+pub struct GearPredictor<S, P, const VALUES: usize, const FREEDOMS: usize> {
     inverse_dt: f64,
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, P, VALUES, FREEDOMS> {
+impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize>
+    GearPredictor<S, P, VALUES, FREEDOMS>
+{
     /// Kernel for steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
-        Predictor { inverse_dt: 1.0 / dt, precisions: PhantomData }
+        GearPredictor { inverse_dt: 1.0 / dt, precisions: PhantomData }
     }
 }
 
 // SAFETY: the slots depend on the const parameters only.
-unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
-    for Predictor<S, P, VALUES, FREEDOMS>
+unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Kernel
+    for GearPredictor<S, P, VALUES, FREEDOMS>
 {
     type Lane = S;
 
@@ -175,7 +177,7 @@ unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> 
 /// Appendix A multiplies the coefficients by the new acceleration. It must be the difference from the predicted one: Δ =
 /// (dt²/2)(a − a_predicted), q_k += c_k Δ.
 #[derive(Clone, Copy, Debug)]
-pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
+pub struct GearCorrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     dt: f64,
     coefficients: [f64; 6],
     inertia: Inertia,
@@ -184,11 +186,13 @@ pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
+impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize>
+    GearCorrector<S, P, VALUES, FREEDOMS>
+{
     /// Kernel for steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, acceleration: Acceleration, inertia: Inertia, gravity: [f64; 2]) -> Self {
-        Corrector {
+        GearCorrector {
             dt,
             coefficients: coefficients(VALUES, acceleration),
             inertia,
@@ -202,13 +206,13 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {
-        Corrector { checked: true, ..self }
+        GearCorrector { checked: true, ..self }
     }
 }
 
 // SAFETY: the slots depend on the const parameters, the inertia and the non-zero components of gravity.
-unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
-    for Corrector<S, P, VALUES, FREEDOMS>
+unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Kernel
+    for GearCorrector<S, P, VALUES, FREEDOMS>
 {
     type Lane = S;
 

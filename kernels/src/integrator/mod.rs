@@ -6,7 +6,7 @@ pub mod single;
 pub mod velocity_verlet;
 
 use crate::backend::Registers;
-use crate::isa::{Array, Counter, Element, Machine, Slot, Vector};
+use crate::isa::{Array, Element, LaneCounter, Machine, Slot, Vector};
 
 /// Largest number of entries in a row of the state: the position and its derivatives.
 pub const DERIVATIVES: usize = 6;
@@ -15,7 +15,7 @@ const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
 pub(crate) const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
 /// Counts discs whose new state is not finite. Written by kernels that are [`checked`](gear::Corrector::checked).
-pub const NOT_FINITE: Counter = Counter(3);
+pub const NOT_FINITE: LaneCounter = LaneCounter(3);
 
 /// Divisor of the forces.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,18 +5,18 @@ use crate::backend::Scalar;
 
 /// One degree of freedom under a given acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Single<C> {
+pub struct SingleFreedom<C> {
     scheme: C,
     dt: f64,
     /// Derivatives, scaled as the scheme requires.
     pub row: [f64; DERIVATIVES],
 }
 
-impl<C: Scheme> Single<C> {
+impl<C: Scheme> SingleFreedom<C> {
     /// At rest at the origin, with steps of `dt` (time).
     #[inline]
     pub fn new(scheme: C, dt: f64) -> Self {
-        Single { scheme, dt, row: [0.0; DERIVATIVES] }
+        SingleFreedom { scheme, dt, row: [0.0; DERIVATIVES] }
     }
 
     /// Sets the initial position (length) and velocity (length/time), and the acceleration there (length/time²).
@@ -27,7 +27,7 @@ impl<C: Scheme> Single<C> {
         let mut row = [0.0; DERIVATIVES];
         (row[0], row[1]) = (position, velocity * scales[1]);
         self.scheme.begin(&self.context(), &mut row, acceleration(position, velocity));
-        Single { row, ..self }
+        SingleFreedom { row, ..self }
     }
 
     /// Position (length) and velocity (length/time).
@@ -41,7 +41,7 @@ impl<C: Scheme> Single<C> {
     pub fn step(&mut self, acceleration: impl Fn(f64, f64) -> f64) {
         let mut row = self.row;
         self.scheme.predict(&self.context(), &mut row);
-        let [position, velocity] = Single { row, ..*self }.motion();
+        let [position, velocity] = SingleFreedom { row, ..*self }.motion();
         self.scheme.correct(&self.context(), &mut row, acceleration(position, velocity));
         self.row = row;
     }
@@ -67,7 +67,7 @@ mod tests {
     fn off<C: Scheme>(scheme: C, steps: u32) -> f64 {
         let spring = |position: f64, _: f64| -position;
         let dt = std::f64::consts::FRAC_PI_2 / f64::from(steps);
-        let mut single = Single::new(scheme, dt).starting(1.0, 0.0, spring);
+        let mut single = SingleFreedom::new(scheme, dt).starting(1.0, 0.0, spring);
         (0..steps).for_each(|_| single.step(spring));
         let [position, velocity] = single.motion();
         position.abs().max((velocity + 1.0).abs())

@@ -6,7 +6,7 @@
 use super::gear::STATE;
 use super::{Context, DERIVATIVES, Inertia, NOT_FINITE, Scheme, VELOCITY, gathered_acceleration};
 use crate::backend::Registers;
-use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
+use crate::isa::{Array, Element, Kernel, Machine, Predicate, Slot, Vector};
 use std::marker::PhantomData;
 
 /// The velocity Verlet scheme.
@@ -61,16 +61,16 @@ pub(super) fn drift<V: Vector>(uniform: impl Fn(f64) -> V, dt: f64, row: &mut [V
 ///
 /// `S` is the state's precision, `P` the forces'; `FREEDOMS` is 2, or 3 with rotation.
 #[derive(Clone, Copy, Debug)]
-pub struct Drift<S, P, const FREEDOMS: usize> {
+pub struct VerletDrift<S, P, const FREEDOMS: usize> {
     dt: f64,
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element, const FREEDOMS: usize> Drift<S, P, FREEDOMS> {
+impl<S: Element, P: Element, const FREEDOMS: usize> VerletDrift<S, P, FREEDOMS> {
     /// Kernel for steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
-        Drift { dt, precisions: PhantomData }
+        VerletDrift { dt, precisions: PhantomData }
     }
 }
 
@@ -85,7 +85,7 @@ fn row<S: Element, M: Machine>(m: M, freedom: usize) -> [M::V; DERIVATIVES] {
 }
 
 // SAFETY: the slots depend on the const parameters only.
-unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, FREEDOMS> {
+unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Kernel for VerletDrift<S, P, FREEDOMS> {
     type Lane = S;
 
     #[inline(always)]
@@ -104,7 +104,7 @@ unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Drift<S, P, 
 
 /// Gathers the forces from the lattice and applies the second half kick. Vector length: the discs.
 #[derive(Clone, Copy, Debug)]
-pub struct Kick<S, P, const FREEDOMS: usize> {
+pub struct VerletKick<S, P, const FREEDOMS: usize> {
     dt: f64,
     inertia: Inertia,
     gravity: [f64; 2],
@@ -112,23 +112,23 @@ pub struct Kick<S, P, const FREEDOMS: usize> {
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element, const FREEDOMS: usize> Kick<S, P, FREEDOMS> {
+impl<S: Element, P: Element, const FREEDOMS: usize> VerletKick<S, P, FREEDOMS> {
     /// Kernel for steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, inertia: Inertia, gravity: [f64; 2]) -> Self {
-        Kick { dt, inertia, gravity, checked: false, precisions: PhantomData }
+        VerletKick { dt, inertia, gravity, checked: false, precisions: PhantomData }
     }
 
     /// Makes the kernel also count in [`NOT_FINITE`] the discs whose acceleration is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {
-        Kick { checked: true, ..self }
+        VerletKick { checked: true, ..self }
     }
 }
 
 // SAFETY: the slots depend on the const parameters, the inertia and the non-zero components of gravity.
-unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Text for Kick<S, P, FREEDOMS> {
+unsafe impl<S: Element, P: Element, const FREEDOMS: usize> Kernel for VerletKick<S, P, FREEDOMS> {
     type Lane = S;
 
     #[allow(clippy::needless_range_loop, reason = "several lists share one index")]

@@ -30,29 +30,29 @@ struct Pages {
     origin: NonNull<u8>,
     length: usize,
     /// Owns the memory.
-    _bytes: Bytes,
+    _bytes: PageOwner,
 }
 
 /// Owner of the memory of pages.
-enum Bytes {
+enum PageOwner {
     Mapped(MmapMut),
     /// From the allocator, the fallback if the system maps no more pages.
     Allocated(Vec<u8>),
 }
 
-impl Bytes {
-    fn holding(length: usize) -> Bytes {
-        let Ok(map) = MmapMut::map_anon(length) else { return Bytes::Allocated(vec![0; length]) };
+impl PageOwner {
+    fn holding(length: usize) -> PageOwner {
+        let Ok(map) = MmapMut::map_anon(length) else { return PageOwner::Allocated(vec![0; length]) };
         #[cfg(target_os = "linux")]
         #[expect(clippy::let_underscore_must_use, reason = "small pages are a valid fallback")]
         let _ = map.advise(memmap2::Advice::HugePage);
-        Bytes::Mapped(map)
+        PageOwner::Mapped(map)
     }
 
     fn all(&mut self) -> &mut [u8] {
         match self {
-            Bytes::Mapped(map) => map,
-            Bytes::Allocated(bytes) => bytes,
+            PageOwner::Mapped(map) => map,
+            PageOwner::Allocated(bytes) => bytes,
         }
     }
 }
@@ -68,7 +68,7 @@ impl Pages {
     fn holding(bytes: usize) -> Arc<Pages> {
         let length = bytes.next_multiple_of(LARGE);
         // One page more, because the first may begin anywhere.
-        let mut bytes = Bytes::holding(length + LARGE);
+        let mut bytes = PageOwner::holding(length + LARGE);
         let skipped = bytes.all().as_ptr().align_offset(LARGE);
         let origin = NonNull::from(&mut bytes.all()[skipped..]).cast();
         Arc::new(Pages { origin, length, _bytes: bytes })

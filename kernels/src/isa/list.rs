@@ -144,7 +144,7 @@ macro_rules! for_each_op {
     };
     ($($call:tt)*) => {
         for_each_op! {
-            @({V Self::V} {P Self::P} {I Self::I} {At Self::I} {Numbers Slot<T>} {Entries Slot<u32>} {Counter Counter})
+            @({V Self::V} {P Self::P} {I Self::I} {At Self::I} {Numbers Slot<T>} {Entries Slot<u32>} {Counter LaneCounter})
             $($call)*
         }
     };

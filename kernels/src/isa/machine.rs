@@ -2,7 +2,7 @@
 
 use super::element::{Element, Storage};
 use super::list::for_each_op;
-use super::memory::Counter;
+use super::memory::LaneCounter;
 use super::slot::Slot;
 use super::vector::Vector;
 
@@ -45,7 +45,7 @@ pub trait Machine: Copy {
 /// # Safety
 /// For equal values of `self`, every call of `body` must name the same slots at the same shifts, or a subset where
 /// [`Machine::none`] allows an early exit. The footprint is traced once, and later runs are checked against it.
-pub unsafe trait Text {
+pub unsafe trait Kernel {
     /// Number type of the kernel's registers.
     type Lane: Element;
 

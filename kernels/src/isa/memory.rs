@@ -12,7 +12,7 @@ pub const COUNTERS: usize = 4;
 
 /// Counter of true lanes of a predicate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counter(pub u8);
+pub struct LaneCounter(pub u8);
 
 /// Reasons why a kernel cannot run on a memory. Nothing was executed, unless it was interrupted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -60,25 +60,25 @@ pub enum ProgramError {
 
 /// A bound slice.
 #[derive(Clone, Copy)]
-pub(crate) struct Column<T> {
+pub(crate) struct ArrayColumn<T> {
     origin: *mut T,
     length: usize,
     writable: bool,
 }
 
-impl Column<()> {
-    const UNBOUND: Column<()> = Column { origin: std::ptr::null_mut(), length: 0, writable: false };
+impl ArrayColumn<()> {
+    const UNBOUND: ArrayColumn<()> = ArrayColumn { origin: std::ptr::null_mut(), length: 0, writable: false };
 }
 
-impl<T: Copy> Column<T> {
+impl<T: Copy> ArrayColumn<T> {
     /// Reinterprets the element type.
     #[inline(always)]
-    fn cast<U>(self) -> Column<U> {
-        Column { origin: self.origin.cast(), length: self.length, writable: self.writable }
+    fn cast<U>(self) -> ArrayColumn<U> {
+        ArrayColumn { origin: self.origin.cast(), length: self.length, writable: self.writable }
     }
 }
 
-impl<T: Storage> Column<T> {
+impl<T: Storage> ArrayColumn<T> {
     /// Pointer to an element.
     ///
     /// # Safety
@@ -144,7 +144,7 @@ impl<T: Storage> Column<T> {
 /// Slices are borrowed for the life of the memory; mutable ones exclusively.
 pub struct Memory<'a> {
     /// Columns by element type: the entries of a type's table were bound as that type.
-    tables: [[Column<()>; Array::ALL.len()]; TABLES],
+    tables: [[ArrayColumn<()>; Array::ALL.len()]; TABLES],
     counters: [Cell<u64>; COUNTERS],
     borrow: PhantomData<&'a mut ()>,
 }
@@ -152,7 +152,7 @@ pub struct Memory<'a> {
 impl Default for Memory<'_> {
     #[inline]
     fn default() -> Self {
-        let tables = [[Column::UNBOUND; Array::ALL.len()]; TABLES];
+        let tables = [[ArrayColumn::UNBOUND; Array::ALL.len()]; TABLES];
         Memory { tables, counters: Default::default(), borrow: PhantomData }
     }
 }
@@ -177,7 +177,7 @@ impl<'a> Memory<'a> {
     pub fn bind_read<T: Storage>(&mut self, slot: Slot<T>, slice: &'a [T]) {
         // The pointer is never written through: the column is not writable.
         let origin = slice.as_ptr().cast_mut();
-        self.bind(slot, Column { origin, length: slice.len(), writable: false });
+        self.bind(slot, ArrayColumn { origin, length: slice.len(), writable: false });
     }
 
     /// Binds a slice for reading and writing.
@@ -192,22 +192,22 @@ impl<'a> Memory<'a> {
     #[inline]
     pub fn bind_write<T: Storage>(&mut self, slot: Slot<T>, slice: &'a mut [T]) {
         let length = slice.len();
-        self.bind(slot, Column { origin: slice.as_mut_ptr(), length, writable: true });
+        self.bind(slot, ArrayColumn { origin: slice.as_mut_ptr(), length, writable: true });
     }
 
     #[inline]
-    fn bind<T: Storage>(&mut self, slot: Slot<T>, column: Column<T>) {
+    fn bind<T: Storage>(&mut self, slot: Slot<T>, column: ArrayColumn<T>) {
         self.tables[T::TABLE][slot.array() as usize] = column.cast();
     }
 
     #[inline(always)]
-    pub(crate) fn column<T: Storage>(&self, slot: Slot<T>) -> Column<T> {
+    pub(crate) fn column<T: Storage>(&self, slot: Slot<T>) -> ArrayColumn<T> {
         self.tables[T::TABLE][slot.array() as usize].cast()
     }
 
     /// Current value of `counter`.
     #[inline]
-    pub fn counted(&self, counter: Counter) -> u64 {
+    pub fn counted(&self, counter: LaneCounter) -> u64 {
         self.counters[counter.0 as usize].get()
     }
 
@@ -232,7 +232,7 @@ impl<'a> Memory<'a> {
     }
 
     #[inline(always)]
-    pub(crate) fn count(&self, counter: Counter, more: u64) {
+    pub(crate) fn count(&self, counter: LaneCounter, more: u64) {
         let cell = &self.counters[counter.0 as usize];
         cell.set(cell.get() + more);
     }

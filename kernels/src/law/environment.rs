@@ -1,11 +1,11 @@
 //! Interfaces of a law and of the environment that evaluates it.
 
-use super::quantity::{Field, Sum};
+use super::quantity::{ParticleField, ParticleSum};
 use crate::isa::Vector;
 
 /// Observations made beside the sums, while the contacts are in registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Asked {
+pub struct ObservationRequest {
     /// List contacts deeper than this (length).
     pub watched: Option<f64>,
     /// Sum up the power that contacts dissipate.
@@ -29,22 +29,22 @@ pub trait Env<const DIM: usize>: Copy {
     /// Own position, the argument of [`Env::displacement`].
     fn own_position(self) -> [Self::V; DIM];
     /// A quantity of the own particle.
-    fn own(self, field: Field) -> Self::V;
+    fn own(self, field: ParticleField) -> Self::V;
     /// `r_own − r_partner`.
     fn displacement(self, own: [Self::V; DIM], place: Self::Place) -> [Self::V; DIM];
     /// A quantity of the partner.
-    fn partner(self, field: Field, place: Self::Place) -> Self::V;
+    fn partner(self, field: ParticleField, place: Self::Place) -> Self::V;
     /// Broadcasts a number to all pairs.
     fn uniform(self, value: f64) -> Self::V;
     /// True if the predicate is false for all pairs and this execution takes early exits.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
     /// Adds to a sum of the own particle.
-    fn own_add(self, sum: Sum, value: Self::V);
+    fn own_add(self, sum: ParticleSum, value: Self::V);
     /// Subtracts from a sum of the partner. Called only where [`Env::BOTH_PARTNERS`].
-    fn partner_sub(self, sum: Sum, place: Self::Place, value: Self::V);
+    fn partner_sub(self, sum: ParticleSum, place: Self::Place, value: Self::V);
     /// Adds `a · b` to a sum of the own particle. If the pair is visited once, subtracts it from the partner's sum.
     #[inline(always)]
-    fn add_product(self, sum: Sum, place: Self::Place, a: Self::V, b: Self::V) {
+    fn add_product(self, sum: ParticleSum, place: Self::Place, a: Self::V, b: Self::V) {
         let product = a * b;
         self.own_add(sum, product);
         if Self::BOTH_PARTNERS {
@@ -104,9 +104,9 @@ pub trait Law<const DIM: usize>: Clone {
     type Own<V: Copy>: Copy;
 
     /// Quantities that the law reads, besides positions.
-    const FIELDS: &'static [Field];
+    const FIELDS: &'static [ParticleField];
     /// Sums that the law adds to.
-    const SUMS: &'static [Sum];
+    const SUMS: &'static [ParticleSum];
 
     /// Loads the own particle.
     fn own<E: Env<DIM>>(&self, env: E) -> Self::Own<E::V>;

@@ -1,7 +1,7 @@
 //! Granular discs: contacts with a spring, viscous damping, Coulomb friction and rotation.
 
 use super::spring::Spring;
-use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
+use super::{Axis::X, Axis::Y, Env, Law, ParticleField, ParticleSum};
 use crate::isa::{Predicate, Vector};
 
 /// Lever arm of the tangential force, measured from a disc's centre.
@@ -37,7 +37,7 @@ pub struct Contact {
 
 /// Radius and inverse mass of equal discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
+pub struct EqualDiscs {
     /// Radius.
     pub radius: f64,
     /// Inverse mass.
@@ -54,12 +54,12 @@ pub struct Granular<const FRICTION: bool, const EQUAL: bool> {
     /// Parameters of the contacts.
     pub contact: Contact,
     /// The discs if all are equal; not read otherwise.
-    pub disc: Disc,
+    pub disc: EqualDiscs,
 }
 
 /// Quantities of the own disc.
 #[derive(Clone, Copy)]
-pub struct Own<V> {
+pub struct OwnDisc<V> {
     position: [V; 2],
     velocity: [V; 2],
     omega: V,
@@ -69,35 +69,45 @@ pub struct Own<V> {
 
 impl<const FRICTION: bool, const EQUAL: bool> Granular<FRICTION, EQUAL> {
     #[inline(always)]
-    fn radius<V>(&self, uniform: impl Fn(f64) -> V, varying: impl Fn(Field) -> V) -> V {
-        if EQUAL { uniform(self.disc.radius) } else { varying(Field::Radius) }
+    fn radius<V>(&self, uniform: impl Fn(f64) -> V, varying: impl Fn(ParticleField) -> V) -> V {
+        if EQUAL { uniform(self.disc.radius) } else { varying(ParticleField::Radius) }
     }
 
     #[inline(always)]
-    fn inverse_mass<V>(&self, uniform: impl Fn(f64) -> V, varying: impl Fn(Field) -> V) -> V {
-        if EQUAL { uniform(self.disc.inverse_mass) } else { varying(Field::InverseMass) }
+    fn inverse_mass<V>(&self, uniform: impl Fn(f64) -> V, varying: impl Fn(ParticleField) -> V) -> V {
+        if EQUAL { uniform(self.disc.inverse_mass) } else { varying(ParticleField::InverseMass) }
     }
 }
 
 impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUAL> {
-    type Own<V: Copy> = Own<V>;
+    type Own<V: Copy> = OwnDisc<V>;
 
-    const FIELDS: &'static [Field] = match (FRICTION, EQUAL) {
-        (true, true) => &[Field::Velocity(X), Field::Velocity(Y), Field::Omega],
-        (true, false) => {
-            &[Field::Velocity(X), Field::Velocity(Y), Field::Omega, Field::Radius, Field::InverseMass]
-        }
-        (false, true) => &[Field::Velocity(X), Field::Velocity(Y)],
-        (false, false) => &[Field::Velocity(X), Field::Velocity(Y), Field::Radius, Field::InverseMass],
+    const FIELDS: &'static [ParticleField] = match (FRICTION, EQUAL) {
+        (true, true) => &[ParticleField::Velocity(X), ParticleField::Velocity(Y), ParticleField::Omega],
+        (true, false) => &[
+            ParticleField::Velocity(X),
+            ParticleField::Velocity(Y),
+            ParticleField::Omega,
+            ParticleField::Radius,
+            ParticleField::InverseMass,
+        ],
+        (false, true) => &[ParticleField::Velocity(X), ParticleField::Velocity(Y)],
+        (false, false) => &[
+            ParticleField::Velocity(X),
+            ParticleField::Velocity(Y),
+            ParticleField::Radius,
+            ParticleField::InverseMass,
+        ],
     };
-    const SUMS: &'static [Sum] = if FRICTION { &Sum::PLANAR } else { &[Sum::Force(X), Sum::Force(Y)] };
+    const SUMS: &'static [ParticleSum] =
+        if FRICTION { &ParticleSum::PLANAR } else { &[ParticleSum::Force(X), ParticleSum::Force(Y)] };
 
     #[inline(always)]
-    fn own<E: Env<2>>(&self, env: E) -> Own<E::V> {
-        Own {
+    fn own<E: Env<2>>(&self, env: E) -> OwnDisc<E::V> {
+        OwnDisc {
             position: env.own_position(),
-            velocity: [env.own(Field::Velocity(X)), env.own(Field::Velocity(Y))],
-            omega: if FRICTION { env.own(Field::Omega) } else { env.uniform(0.0) },
+            velocity: [env.own(ParticleField::Velocity(X)), env.own(ParticleField::Velocity(Y))],
+            omega: if FRICTION { env.own(ParticleField::Omega) } else { env.uniform(0.0) },
             radius: self.radius(|r| env.uniform(r), |field| env.own(field)),
             inverse_mass: self.inverse_mass(|w| env.uniform(w), |field| env.own(field)),
         }
@@ -111,7 +121,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
     /// spins opposite signs: here both surfaces count, `R_i Ω_i + R_j Ω_j`. (10)–(12) use another tangent than (13): here (13) is
     /// used throughout.
     #[inline(always)]
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
+    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &OwnDisc<E::V>) {
         let Contact { normal_damping, shear_damping, friction, cohesionless, arm, .. } = self.contact;
         let uniform = |value: f64| env.uniform(value);
         let zero = uniform(0.0);
@@ -135,8 +145,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         env.section("normal force"); // (14), (17)
         let inverse_distance = uniform(1.0) / distance;
         let [nx, ny] = [dx * inverse_distance, dy * inverse_distance];
-        let vx = own.velocity[0] - env.partner(Field::Velocity(X), place);
-        let vy = own.velocity[1] - env.partner(Field::Velocity(Y), place);
+        let vx = own.velocity[0] - env.partner(ParticleField::Velocity(X), place);
+        let vy = own.velocity[1] - env.partner(ParticleField::Velocity(Y), place);
         let inverse_mass = self.inverse_mass(uniform, |field| env.partner(field, place));
         let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
         let overlap = penetration.max(zero);
@@ -169,8 +179,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
         if !FRICTION {
             env.section("sums"); // (10), (11)
-            share(env, place, Sum::Force(X), fn_ * nx);
-            share(env, place, Sum::Force(Y), fn_ * ny);
+            share(env, place, ParticleSum::Force(X), fn_ * nx);
+            share(env, place, ParticleSum::Force(Y), fn_ * ny);
             if env.counts_dissipation() {
                 env.section("dissipation");
                 dissipate((elastic - normal) * separation);
@@ -186,7 +196,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         }
         let surfaces = if arm == ContactArm::Lammps { [own.radius, radius] } else { arms };
         let own_spin = surfaces[0] * own.omega;
-        let omega = env.partner(Field::Omega, place);
+        let omega = env.partner(ParticleField::Omega, place);
         let spin = own_spin + surfaces[1] * omega;
         let sliding = vy * nx - vx * ny;
         let slip = sliding - spin;
@@ -196,11 +206,11 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let fs = E::V::select(contact, shear, zero); // (9)
 
         env.section("sums"); // (10)-(12)
-        share(env, place, Sum::Force(X), fn_ * nx - fs * ny);
-        share(env, place, Sum::Force(Y), fn_ * ny + fs * nx);
-        env.own_add(Sum::Torque, zero - arms[0] * fs);
+        share(env, place, ParticleSum::Force(X), fn_ * nx - fs * ny);
+        share(env, place, ParticleSum::Force(Y), fn_ * ny + fs * nx);
+        env.own_add(ParticleSum::Torque, zero - arms[0] * fs);
         if E::BOTH_PARTNERS {
-            env.partner_sub(Sum::Torque, place, arms[1] * fs);
+            env.partner_sub(ParticleSum::Torque, place, arms[1] * fs);
         }
         if env.counts_dissipation() {
             env.section("dissipation");
@@ -213,7 +223,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
 /// Adds a force to the own disc and its reaction to the partner.
 #[inline(always)]
-fn share<E: Env<2>>(env: E, place: E::Place, sum: Sum, force: E::V) {
+fn share<E: Env<2>>(env: E, place: E::Place, sum: ParticleSum, force: E::V) {
     env.own_add(sum, force);
     if E::BOTH_PARTNERS {
         env.partner_sub(sum, place, force);

@@ -1,6 +1,6 @@
 //! Softened gravity between bodies, PWP.
 
-use super::{Axis, Env, Field, Law, Sum};
+use super::{Axis, Env, Law, ParticleField, ParticleSum};
 use crate::isa::Vector;
 
 /// Attraction of two masses, `F = −m_i m_j d/(|d|² + ε²)^{3/2}` with d from the partner to the own body; the constant of gravity
@@ -23,15 +23,21 @@ pub struct OwnBody<V> {
     minus_mass: V,
 }
 
-const VELOCITY: [Field; 3] = [Field::Velocity(Axis::X), Field::Velocity(Axis::Y), Field::Velocity(Axis::Z)];
-const FORCE: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Force(Axis::Z)];
-const FORCE_RATE: [Sum; 3] = [Sum::ForceRate(Axis::X), Sum::ForceRate(Axis::Y), Sum::ForceRate(Axis::Z)];
+const VELOCITY: [ParticleField; 3] =
+    [ParticleField::Velocity(Axis::X), ParticleField::Velocity(Axis::Y), ParticleField::Velocity(Axis::Z)];
+const FORCE: [ParticleSum; 3] =
+    [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y), ParticleSum::Force(Axis::Z)];
+const FORCE_RATE: [ParticleSum; 3] =
+    [ParticleSum::ForceRate(Axis::X), ParticleSum::ForceRate(Axis::Y), ParticleSum::ForceRate(Axis::Z)];
 
 impl<const RATE: bool> Law<3> for Gravity<RATE> {
     type Own<V: Copy> = OwnBody<V>;
-    const FIELDS: &'static [Field] =
-        if RATE { &[Field::Mass, VELOCITY[0], VELOCITY[1], VELOCITY[2]] } else { &[Field::Mass] };
-    const SUMS: &'static [Sum] = if RATE {
+    const FIELDS: &'static [ParticleField] = if RATE {
+        &[ParticleField::Mass, VELOCITY[0], VELOCITY[1], VELOCITY[2]]
+    } else {
+        &[ParticleField::Mass]
+    };
+    const SUMS: &'static [ParticleSum] = if RATE {
         &[FORCE[0], FORCE[1], FORCE[2], FORCE_RATE[0], FORCE_RATE[1], FORCE_RATE[2]]
     } else {
         &FORCE
@@ -42,7 +48,7 @@ impl<const RATE: bool> Law<3> for Gravity<RATE> {
         OwnBody {
             position: env.own_position(),
             velocity: if RATE { Some(VELOCITY.map(|velocity| env.own(velocity))) } else { None },
-            minus_mass: env.uniform(0.0) - env.own(Field::Mass),
+            minus_mass: env.uniform(0.0) - env.own(ParticleField::Mass),
         }
     }
 
@@ -55,7 +61,7 @@ impl<const RATE: bool> Law<3> for Gravity<RATE> {
         let square = dx.times_plus(dx, dy.times_plus(dy, dz.times_plus(dz, softened)));
         env.section("attraction");
         let inverse_cube = square.inverse_three_halves(env.uniform(1.0));
-        let attraction = own.minus_mass * env.partner(Field::Mass, place) * inverse_cube;
+        let attraction = own.minus_mass * env.partner(ParticleField::Mass, place) * inverse_cube;
         for axis in 0..3 {
             env.add_product(FORCE[axis], place, displacement[axis], attraction);
         }

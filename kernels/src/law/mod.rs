@@ -10,6 +10,6 @@ pub mod spring;
 mod stated;
 pub mod yukawa;
 
-pub use environment::{Asked, Env, Law};
-pub use quantity::{Axis, Field, Sum};
-pub use stated::{Stated, check};
+pub use environment::{Env, Law, ObservationRequest};
+pub use quantity::{Axis, ParticleField, ParticleSum};
+pub use stated::{StatedEnv, check};

@@ -1,6 +1,6 @@
 //! Pair potentials. Each states its formulas once; cutting off, shifting and sweeping are shared by all.
 
-use super::{Axis::X, Axis::Y, Env, Field, Law, Sum};
+use super::{Axis::X, Axis::Y, Env, Law, ParticleField, ParticleSum};
 use crate::isa::Vector;
 
 /// A potential U(r) of two particles: it vanishes at large distance, and grows without bound and ever more steeply at small
@@ -88,8 +88,8 @@ impl<P: PairPotential> CutOff<P> {
 impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
     type Own<V: Copy> = [V; 2];
 
-    const FIELDS: &'static [Field] = &[];
-    const SUMS: &'static [Sum] = &[Sum::Force(X), Sum::Force(Y)];
+    const FIELDS: &'static [ParticleField] = &[];
+    const SUMS: &'static [ParticleSum] = &[ParticleSum::Force(X), ParticleSum::Force(Y)];
 
     #[inline(always)]
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
@@ -113,7 +113,7 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
         let [force, term] = self.potential.swept_force(uniform, square);
         let strength = E::V::select(within, force, zero);
         env.section("sums");
-        for (sum, along) in [(Sum::Force(X), dx), (Sum::Force(Y), dy)] {
+        for (sum, along) in [(ParticleSum::Force(X), dx), (ParticleSum::Force(Y), dy)] {
             env.add_product(sum, place, strength, along);
         }
         if env.observes_energy() {

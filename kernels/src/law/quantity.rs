@@ -13,7 +13,7 @@ pub enum Axis {
 
 /// A quantity of a particle that a law may read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Field {
+pub enum ParticleField {
     /// Velocity along an axis.
     Velocity(Axis),
     /// Angular velocity in the plane, counter-clockwise.
@@ -30,7 +30,7 @@ pub enum Field {
 
 /// A sum over partners that a law adds to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sum {
+pub enum ParticleSum {
     /// Force along an axis.
     Force(Axis),
     /// Torque in the plane, counter-clockwise.
@@ -44,36 +44,36 @@ impl Axis {
     pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 }
 
-impl Field {
+impl ParticleField {
     /// Every field.
-    pub const ALL: [Field; 8] = [
-        Field::Velocity(Axis::X),
-        Field::Velocity(Axis::Y),
-        Field::Velocity(Axis::Z),
-        Field::Omega,
-        Field::Radius,
-        Field::InverseMass,
-        Field::Mass,
-        Field::Occupied,
+    pub const ALL: [ParticleField; 8] = [
+        ParticleField::Velocity(Axis::X),
+        ParticleField::Velocity(Axis::Y),
+        ParticleField::Velocity(Axis::Z),
+        ParticleField::Omega,
+        ParticleField::Radius,
+        ParticleField::InverseMass,
+        ParticleField::Mass,
+        ParticleField::Occupied,
     ];
     /// Every field in two dimensions.
-    pub const PLANAR: [Field; 7] = [
-        Field::Velocity(Axis::X),
-        Field::Velocity(Axis::Y),
-        Field::Omega,
-        Field::Radius,
-        Field::InverseMass,
-        Field::Mass,
-        Field::Occupied,
+    pub const PLANAR: [ParticleField; 7] = [
+        ParticleField::Velocity(Axis::X),
+        ParticleField::Velocity(Axis::Y),
+        ParticleField::Omega,
+        ParticleField::Radius,
+        ParticleField::InverseMass,
+        ParticleField::Mass,
+        ParticleField::Occupied,
     ];
 
     /// True if particles have this field in a number of dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {
-            Field::Velocity(axis) => (axis as usize) < dimensions,
-            Field::Omega | Field::Occupied => dimensions == 2,
-            Field::Radius | Field::InverseMass | Field::Mass => true,
+            ParticleField::Velocity(axis) => (axis as usize) < dimensions,
+            ParticleField::Omega | ParticleField::Occupied => dimensions == 2,
+            ParticleField::Radius | ParticleField::InverseMass | ParticleField::Mass => true,
         }
     }
 
@@ -81,39 +81,40 @@ impl Field {
     #[inline]
     pub const fn name(self) -> &'static str {
         match self {
-            Field::Velocity(Axis::X) => "the velocity along x",
-            Field::Velocity(Axis::Y) => "the velocity along y",
-            Field::Velocity(Axis::Z) => "the velocity along z",
-            Field::Omega => "the angular velocity",
-            Field::Radius => "the radius",
-            Field::InverseMass => "the inverse mass",
-            Field::Mass => "the mass",
-            Field::Occupied => "the occupation of its cell",
+            ParticleField::Velocity(Axis::X) => "the velocity along x",
+            ParticleField::Velocity(Axis::Y) => "the velocity along y",
+            ParticleField::Velocity(Axis::Z) => "the velocity along z",
+            ParticleField::Omega => "the angular velocity",
+            ParticleField::Radius => "the radius",
+            ParticleField::InverseMass => "the inverse mass",
+            ParticleField::Mass => "the mass",
+            ParticleField::Occupied => "the occupation of its cell",
         }
     }
 }
 
-impl Sum {
+impl ParticleSum {
     /// Every sum.
-    pub const ALL: [Sum; 7] = [
-        Sum::Force(Axis::X),
-        Sum::Force(Axis::Y),
-        Sum::Force(Axis::Z),
-        Sum::Torque,
-        Sum::ForceRate(Axis::X),
-        Sum::ForceRate(Axis::Y),
-        Sum::ForceRate(Axis::Z),
+    pub const ALL: [ParticleSum; 7] = [
+        ParticleSum::Force(Axis::X),
+        ParticleSum::Force(Axis::Y),
+        ParticleSum::Force(Axis::Z),
+        ParticleSum::Torque,
+        ParticleSum::ForceRate(Axis::X),
+        ParticleSum::ForceRate(Axis::Y),
+        ParticleSum::ForceRate(Axis::Z),
     ];
     /// Every sum in two dimensions, in the order of their [columns](Self::column).
-    pub const PLANAR: [Sum; 3] = [Sum::Force(Axis::X), Sum::Force(Axis::Y), Sum::Torque];
+    pub const PLANAR: [ParticleSum; 3] =
+        [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y), ParticleSum::Torque];
 
     /// True if particles have this sum in a number of dimensions.
     #[inline(always)]
     pub const fn is_in(self, dimensions: usize) -> bool {
         match self {
-            Sum::Force(axis) => (axis as usize) < dimensions,
-            Sum::Torque => dimensions == 2,
-            Sum::ForceRate(_) => dimensions == 3,
+            ParticleSum::Force(axis) => (axis as usize) < dimensions,
+            ParticleSum::Torque => dimensions == 2,
+            ParticleSum::ForceRate(_) => dimensions == 3,
         }
     }
 
@@ -121,9 +122,9 @@ impl Sum {
     #[inline(always)]
     pub const fn column<const DIM: usize>(self) -> usize {
         match self {
-            Sum::Force(axis) => axis as usize,
-            Sum::Torque => DIM,
-            Sum::ForceRate(axis) => DIM + axis as usize,
+            ParticleSum::Force(axis) => axis as usize,
+            ParticleSum::Torque => DIM,
+            ParticleSum::ForceRate(axis) => DIM + axis as usize,
         }
     }
 
@@ -131,13 +132,13 @@ impl Sum {
     #[inline]
     pub const fn name(self) -> &'static str {
         match self {
-            Sum::Force(Axis::X) => "the force along x",
-            Sum::Force(Axis::Y) => "the force along y",
-            Sum::Force(Axis::Z) => "the force along z",
-            Sum::Torque => "the torque",
-            Sum::ForceRate(Axis::X) => "the rate of the force along x",
-            Sum::ForceRate(Axis::Y) => "the rate of the force along y",
-            Sum::ForceRate(Axis::Z) => "the rate of the force along z",
+            ParticleSum::Force(Axis::X) => "the force along x",
+            ParticleSum::Force(Axis::Y) => "the force along y",
+            ParticleSum::Force(Axis::Z) => "the force along z",
+            ParticleSum::Torque => "the torque",
+            ParticleSum::ForceRate(Axis::X) => "the rate of the force along x",
+            ParticleSum::ForceRate(Axis::Y) => "the rate of the force along y",
+            ParticleSum::ForceRate(Axis::Z) => "the rate of the force along z",
         }
     }
 }

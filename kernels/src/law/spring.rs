@@ -54,7 +54,7 @@ impl Spring {
 
 /// Outcome of a head-on impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Impact {
+pub struct HeadOnImpact {
     /// Relative speed after the impact divided by that before.
     pub restitution: f64,
     /// Duration (time).
@@ -64,7 +64,7 @@ pub struct Impact {
 impl Spring {
     /// Integrates a head-on impact. `stiffness` is that of the spring divided by the effective mass, `damping` likewise (1/time),
     /// `speed` the relative speed (length/time). The force never pulls.
-    pub fn impact(self, stiffness: f64, damping: f64, speed: f64) -> Impact {
+    pub fn impact(self, stiffness: f64, damping: f64, speed: f64) -> HeadOnImpact {
         let acceleration = |depth: f64, speed: f64| {
             (-stiffness * depth.max(0.0).powf(self.exponent()) - damping * speed).min(0.0)
         };
@@ -81,7 +81,7 @@ impl Spring {
             depth += dt * half;
             steps += 1.0;
         }
-        Impact { restitution: (-v / speed).max(0.0), duration: steps * dt }
+        HeadOnImpact { restitution: (-v / speed).max(0.0), duration: steps * dt }
     }
 }
 

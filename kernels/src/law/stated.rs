@@ -5,27 +5,27 @@
 //! compiled check is empty.
 
 use super::environment::{Env, Law};
-use super::quantity::{Field, Sum};
+use super::quantity::{ParticleField, ParticleSum};
 use crate::isa::{ProgramError, Vector};
 use std::cell::Cell;
 use std::marker::PhantomData;
 
 /// An environment in which the law `L` can use only the quantities it states.
-pub struct Stated<E, L> {
+pub struct StatedEnv<E, L> {
     env: E,
     law: PhantomData<fn() -> L>,
 }
 
-impl<E: Copy, L> Clone for Stated<E, L> {
+impl<E: Copy, L> Clone for StatedEnv<E, L> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<E: Copy, L> Copy for Stated<E, L> {}
+impl<E: Copy, L> Copy for StatedEnv<E, L> {}
 
-impl<E, L> Stated<E, L> {
+impl<E, L> StatedEnv<E, L> {
     /// An environment for one law.
     #[inline(always)]
     pub fn new<const DIM: usize>(env: E, _: &L) -> Self
@@ -34,11 +34,11 @@ impl<E, L> Stated<E, L> {
         L: Law<DIM>,
     {
         const { assert_in_dimensions::<DIM, L>() };
-        Stated { env, law: PhantomData }
+        StatedEnv { env, law: PhantomData }
     }
 
     #[inline(always)]
-    fn field<const DIM: usize>(field: Field)
+    fn field<const DIM: usize>(field: ParticleField)
     where
         L: Law<DIM>,
     {
@@ -48,7 +48,7 @@ impl<E, L> Stated<E, L> {
     }
 
     #[inline(always)]
-    fn sum<const DIM: usize>(sum: Sum)
+    fn sum<const DIM: usize>(sum: ParticleSum)
     where
         L: Law<DIM>,
     {
@@ -79,27 +79,27 @@ const fn assert_in_dimensions<const DIM: usize, L: Law<DIM>>() {
 }
 
 #[inline(always)]
-const fn bit_of_field(field: Field) -> u32 {
+const fn bit_of_field(field: ParticleField) -> u32 {
     1 << match field {
-        Field::Velocity(axis) => axis as u32,
-        Field::Omega => 3,
-        Field::Radius => 4,
-        Field::InverseMass => 5,
-        Field::Mass => 6,
-        Field::Occupied => 7,
+        ParticleField::Velocity(axis) => axis as u32,
+        ParticleField::Omega => 3,
+        ParticleField::Radius => 4,
+        ParticleField::InverseMass => 5,
+        ParticleField::Mass => 6,
+        ParticleField::Occupied => 7,
     }
 }
 
 #[inline(always)]
-const fn bit_of_sum(sum: Sum) -> u32 {
+const fn bit_of_sum(sum: ParticleSum) -> u32 {
     1 << match sum {
-        Sum::Force(axis) => axis as u32,
-        Sum::Torque => 3,
-        Sum::ForceRate(axis) => 4 + axis as u32,
+        ParticleSum::Force(axis) => axis as u32,
+        ParticleSum::Torque => 3,
+        ParticleSum::ForceRate(axis) => 4 + axis as u32,
     }
 }
 
-const fn bits_of_fields(fields: &[Field]) -> u32 {
+const fn bits_of_fields(fields: &[ParticleField]) -> u32 {
     let (mut bits, mut i) = (0, 0);
     while i < fields.len() {
         bits |= bit_of_field(fields[i]);
@@ -108,7 +108,7 @@ const fn bits_of_fields(fields: &[Field]) -> u32 {
     bits
 }
 
-const fn bits_of_sums(sums: &[Sum]) -> u32 {
+const fn bits_of_sums(sums: &[ParticleSum]) -> u32 {
     let (mut bits, mut i) = (0, 0);
     while i < sums.len() {
         bits |= bit_of_sum(sums[i]);
@@ -124,7 +124,7 @@ fn unstated(what: &'static str) -> ! {
     panic!("{}", ProgramError::Unstated(what))
 }
 
-impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
+impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
     type V = E::V;
     type Place = E::Place;
     const BOTH_PARTNERS: bool = E::BOTH_PARTNERS;
@@ -134,7 +134,7 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
         self.env.own_position()
     }
     #[inline(always)]
-    fn own(self, field: Field) -> E::V {
+    fn own(self, field: ParticleField) -> E::V {
         Self::field::<DIM>(field);
         self.env.own(field)
     }
@@ -143,7 +143,7 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
         self.env.displacement(own, place)
     }
     #[inline(always)]
-    fn partner(self, field: Field, place: E::Place) -> E::V {
+    fn partner(self, field: ParticleField, place: E::Place) -> E::V {
         Self::field::<DIM>(field);
         self.env.partner(field, place)
     }
@@ -156,17 +156,17 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
         self.env.none(predicate)
     }
     #[inline(always)]
-    fn own_add(self, sum: Sum, value: E::V) {
+    fn own_add(self, sum: ParticleSum, value: E::V) {
         Self::sum::<DIM>(sum);
         self.env.own_add(sum, value);
     }
     #[inline(always)]
-    fn partner_sub(self, sum: Sum, place: E::Place, value: E::V) {
+    fn partner_sub(self, sum: ParticleSum, place: E::Place, value: E::V) {
         Self::sum::<DIM>(sum);
         self.env.partner_sub(sum, place, value);
     }
     #[inline(always)]
-    fn add_product(self, sum: Sum, place: E::Place, a: E::V, b: E::V) {
+    fn add_product(self, sum: ParticleSum, place: E::Place, a: E::V, b: E::V) {
         Self::sum::<DIM>(sum);
         self.env.add_product(sum, place, a, b);
     }
@@ -214,14 +214,14 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for Stated<E, L> {
 /// [`ProgramError::Unstated`] names the first field or sum that it does not state.
 pub fn check<const DIM: usize, L: Law<DIM>>(law: &L) -> Result<(), ProgramError> {
     const { assert_in_dimensions::<DIM, L>() };
-    let probe = Probe::default();
+    let probe = LawProbe::default();
     let own = law.own(&probe);
     law.pair(&probe, (), &own);
     let fields = probe.fields.get() & !bits_of_fields(L::FIELDS);
     let sums = probe.sums.get() & !bits_of_sums(L::SUMS);
-    let field = Field::ALL.into_iter().find(|&field| fields & bit_of_field(field) != 0);
-    let sum = Sum::ALL.into_iter().find(|&sum| sums & bit_of_sum(sum) != 0);
-    match field.map(Field::name).or(sum.map(Sum::name)) {
+    let field = ParticleField::ALL.into_iter().find(|&field| fields & bit_of_field(field) != 0);
+    let sum = ParticleSum::ALL.into_iter().find(|&sum| sums & bit_of_sum(sum) != 0);
+    match field.map(ParticleField::name).or(sum.map(ParticleSum::name)) {
         Some(what) => Err(ProgramError::Unstated(what)),
         None => Ok(()),
     }
@@ -229,22 +229,22 @@ pub fn check<const DIM: usize, L: Law<DIM>>(law: &L) -> Result<(), ProgramError>
 
 /// A pair of particles, all of whose quantities are 1, that records the law's requests.
 #[derive(Default)]
-struct Probe {
+struct LawProbe {
     fields: Cell<u32>,
     sums: Cell<u32>,
 }
 
-impl Probe {
-    fn ask(&self, field: Field) -> f64 {
+impl LawProbe {
+    fn ask(&self, field: ParticleField) -> f64 {
         self.fields.set(self.fields.get() | bit_of_field(field));
         1.0
     }
-    fn add(&self, sum: Sum) {
+    fn add(&self, sum: ParticleSum) {
         self.sums.set(self.sums.get() | bit_of_sum(sum));
     }
 }
 
-impl<const DIM: usize> Env<DIM> for &Probe {
+impl<const DIM: usize> Env<DIM> for &LawProbe {
     type V = f64;
     type Place = ();
     const BOTH_PARTNERS: bool = true;
@@ -252,13 +252,13 @@ impl<const DIM: usize> Env<DIM> for &Probe {
     fn own_position(self) -> [f64; DIM] {
         [0.0; DIM]
     }
-    fn own(self, field: Field) -> f64 {
+    fn own(self, field: ParticleField) -> f64 {
         self.ask(field)
     }
     fn displacement(self, _: [f64; DIM], (): ()) -> [f64; DIM] {
         [1.0; DIM]
     }
-    fn partner(self, field: Field, (): ()) -> f64 {
+    fn partner(self, field: ParticleField, (): ()) -> f64 {
         self.ask(field)
     }
     fn uniform(self, value: f64) -> f64 {
@@ -267,10 +267,10 @@ impl<const DIM: usize> Env<DIM> for &Probe {
     fn none(self, _: bool) -> bool {
         false // No early exit: the whole law is checked.
     }
-    fn own_add(self, sum: Sum, _: f64) {
+    fn own_add(self, sum: ParticleSum, _: f64) {
         self.add(sum);
     }
-    fn partner_sub(self, sum: Sum, (): (), _: f64) {
+    fn partner_sub(self, sum: ParticleSum, (): (), _: f64) {
         self.add(sum);
     }
     fn watches(self) -> bool {

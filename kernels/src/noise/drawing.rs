@@ -10,7 +10,7 @@
 //! compiler vectorises it for any instruction set, with the same bits. Logarithm, sine and cosine are series, accurate to one or
 //! two units in the last place; radii go up to √(2 · 53 ln 2) = 8.6.
 
-use super::{Purpose, philox4x32, top_word};
+use super::{RandomPurpose, philox4x32, top_word};
 use crate::isa::Element;
 
 /// Terms of ln((1 + s)/(1 − s)) = 2 s (1 + s²/3 + s⁴/5 + …): |s| ≤ 0.172, so that the next is below 10⁻¹⁷ of the sum.
@@ -93,7 +93,7 @@ fn box_muller(words: [u32; 4]) -> [f64; 2] {
 /// It must be inlined into code that is compiled for an instruction set. Outputs shorter than `ids` receive the first numbers
 /// only.
 #[inline(always)]
-pub fn draw<S: Element>(seed: u64, purpose: Purpose, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
+pub fn draw<S: Element>(seed: u64, purpose: RandomPurpose, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
     let key = [seed as u32, (seed >> 32) as u32];
     let [across, along] = to;
     let top = top_word(purpose, step, 0);
@@ -108,7 +108,7 @@ pub fn draw<S: Element>(seed: u64, purpose: Purpose, step: u64, ids: &[u32], to:
 mod tests {
     use super::*;
     use crate::InstructionSet;
-    use crate::backend::{Registers, Task, dispatch};
+    use crate::backend::{RegisterTask, Registers, dispatch};
 
     struct Drawing<'a> {
         step: u64,
@@ -116,10 +116,10 @@ mod tests {
         to: [&'a mut [f64]; 2],
     }
 
-    impl Task<f64> for Drawing<'_> {
+    impl RegisterTask<f64> for Drawing<'_> {
         #[inline(always)]
         fn on<R: Registers<Lane = f64>>(self, _: R) {
-            draw(3, Purpose::Test, self.step, self.ids, self.to);
+            draw(3, RandomPurpose::Test, self.step, self.ids, self.to);
         }
     }
 

@@ -27,7 +27,7 @@ use std::convert::Infallible;
 /// A start that is listed or read from a file has no seed of its own: its bath and its walls use [`seed_of_state`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Purpose {
+pub enum RandomPurpose {
     /// Positions and velocities of a start.
     Placement = 1,
     /// Noise of a thermostat.
@@ -87,7 +87,7 @@ pub(crate) fn philox4x32(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 
 /// Fourth word of a counter: the top byte separates purposes, the two bytes below blocks; 40 bits count steps.
 #[inline(always)]
-fn top_word(purpose: Purpose, step: u64, block: u16) -> u32 {
+fn top_word(purpose: RandomPurpose, step: u64, block: u16) -> u32 {
     debug_assert!(
         step < 1 << 40,
         "step {step} cannot be counted: random numbers exist for fewer than 2^40 steps"
@@ -97,7 +97,7 @@ fn top_word(purpose: Purpose, step: u64, block: u16) -> u32 {
 
 /// Random words of (seed, purpose, id, step) in block number `block`.
 #[inline]
-fn words(seed: u64, purpose: Purpose, id: u32, step: u64, block: u16) -> [u32; 4] {
+fn words(seed: u64, purpose: RandomPurpose, id: u32, step: u64, block: u16) -> [u32; 4] {
     philox4x32([id, step as u32, 0, top_word(purpose, step, block)], [seed as u32, (seed >> 32) as u32])
 }
 
@@ -112,7 +112,7 @@ fn uniform(high: u32, low: u32) -> f64 {
 ///
 /// Logarithm, cosine and sine come from the portable `libm`, so that the bits are the same on every platform.
 #[inline]
-pub fn normals(seed: u64, purpose: Purpose, id: u32, step: u64) -> [f64; 2] {
+pub fn normals(seed: u64, purpose: RandomPurpose, id: u32, step: u64) -> [f64; 2] {
     let word = words(seed, purpose, id, step, 0);
     let radius = (-2.0 * libm::log(uniform(word[0], word[1]))).sqrt();
     let angle = std::f64::consts::TAU * uniform(word[2], word[3]);
@@ -123,7 +123,7 @@ pub fn normals(seed: u64, purpose: Purpose, id: u32, step: u64) -> [f64; 2] {
 #[derive(Clone, Debug)]
 pub struct Stream {
     seed: u64,
-    purpose: Purpose,
+    purpose: RandomPurpose,
     id: u32,
     drawn: u64,
 }
@@ -131,7 +131,7 @@ pub struct Stream {
 impl Stream {
     /// Stream from its beginning.
     #[inline]
-    pub fn new(seed: u64, purpose: Purpose, id: u32) -> Self {
+    pub fn new(seed: u64, purpose: RandomPurpose, id: u32) -> Self {
         Stream { seed, purpose, id, drawn: 0 }
     }
 
@@ -184,7 +184,7 @@ mod tests {
         let n = 100_000u32;
         let (mut mean, mut square, mut fourth, mut cross) = (0.0, 0.0, 0.0, 0.0);
         for id in 0..n {
-            let [a, b] = normals(7, Purpose::Test, id, u64::from(id % 17));
+            let [a, b] = normals(7, RandomPurpose::Test, id, u64::from(id % 17));
             mean += a + b;
             square += a * a + b * b;
             fourth += a.powi(4) + b.powi(4);
@@ -199,14 +199,14 @@ mod tests {
 
     #[test]
     fn seed_purpose_id_and_step_all_matter() {
-        let base = normals(1, Purpose::Test, 2, 3);
-        assert_eq!(base.map(f64::to_bits), normals(1, Purpose::Test, 2, 3).map(f64::to_bits));
+        let base = normals(1, RandomPurpose::Test, 2, 3);
+        assert_eq!(base.map(f64::to_bits), normals(1, RandomPurpose::Test, 2, 3).map(f64::to_bits));
         for other in [
-            normals(2, Purpose::Test, 2, 3),
-            normals(1, Purpose::Thermostat, 2, 3),
-            normals(1, Purpose::Test, 3, 3),
-            normals(1, Purpose::Test, 2, 4),
-            normals(1, Purpose::Test, 2, 3 + (1 << 32)),
+            normals(2, RandomPurpose::Test, 2, 3),
+            normals(1, RandomPurpose::Thermostat, 2, 3),
+            normals(1, RandomPurpose::Test, 3, 3),
+            normals(1, RandomPurpose::Test, 2, 4),
+            normals(1, RandomPurpose::Test, 2, 3 + (1 << 32)),
         ] {
             assert_ne!(base, other);
         }
@@ -222,12 +222,14 @@ mod tests {
             [0, 1, 2, 3, seed_of_state(1, [[1, 2]]), seed_of_state(1, [[1, 3]]), seed_of_state(2, [[1, 2]])]
         {
             for id in ids.clone() {
-                let mut stream = Stream::new(seed, Purpose::Placement, id);
+                let mut stream = Stream::new(seed, RandomPurpose::Placement, id);
                 drawn.extend(steps.clone().map(|_| stream.next_u64()));
-                let single = [1, 2, most + 1, most + 2].map(|step| (Purpose::Placement, step)).into_iter();
-                let walls = steps.clone().map(|step| (Purpose::Wall, step));
-                let bath = steps.clone().map(|step| (Purpose::Thermostat, step));
-                let bath = bath.chain([(Purpose::Thermostat, most), (Purpose::Thermostat, most + 1)]);
+                let single =
+                    [1, 2, most + 1, most + 2].map(|step| (RandomPurpose::Placement, step)).into_iter();
+                let walls = steps.clone().map(|step| (RandomPurpose::Wall, step));
+                let bath = steps.clone().map(|step| (RandomPurpose::Thermostat, step));
+                let bath =
+                    bath.chain([(RandomPurpose::Thermostat, most), (RandomPurpose::Thermostat, most + 1)]);
                 for (purpose, step) in single.chain(walls).chain(bath) {
                     let [a, b, c, d] = words(seed, purpose, id, step, 0);
                     drawn.extend([[a, b], [c, d]].map(|[low, high]| u64::from(low) | u64::from(high) << 32));
@@ -251,7 +253,7 @@ mod tests {
 
     #[test]
     fn streams_repeat_and_implement_rand_traits() {
-        let mut a = Stream::new(5, Purpose::Test, 0);
+        let mut a = Stream::new(5, RandomPurpose::Test, 0);
         let mut b = a.clone();
         let first: Vec<u64> = (0..9).map(|_| a.next_u64()).collect();
         assert!(first.iter().all(|&word| word == b.next_u64()));
@@ -260,7 +262,7 @@ mod tests {
         distinct.dedup();
         assert_eq!(distinct.len(), first.len());
         let mut bytes = [0; 7];
-        Stream::new(5, Purpose::Test, 0).fill_bytes(&mut bytes);
+        Stream::new(5, RandomPurpose::Test, 0).fill_bytes(&mut bytes);
         assert_eq!(bytes[..4], (first[0] as u32).to_le_bytes());
     }
 }

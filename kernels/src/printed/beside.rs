@@ -2,9 +2,9 @@
 //! [`Check`](crate::sweep::lattice::cells::Check) of every lattice finds lost discs.
 
 use super::index::INDEX;
-use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
+use crate::isa::{Array, Element, Kernel, Machine, Predicate, Slot, Vector};
 use crate::sweep::lattice::cells::{STRAYS, wrapped};
-use crate::sweep::lattice::{Frame, LatticeShape};
+use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 use std::marker::PhantomData;
 
 /// Wraps positions into the periodic box and counts discs outside the lattice in [`STRAYS`]: the kernels that follow need
@@ -22,7 +22,7 @@ pub struct IntoBox<S> {
 impl<S: Element> IntoBox<S> {
     /// Kernel for a lattice at `frame`.
     #[inline]
-    pub fn new(shape: LatticeShape, frame: Frame) -> Self {
+    pub fn new(shape: LatticeShape, frame: LatticeFrame) -> Self {
         let cells = [shape.columns(), shape.rows()];
         let period = [0, 1].map(|axis| cells[axis] as f64 * frame.edge[axis]);
         let high = [0, 1].map(|axis| {
@@ -39,7 +39,7 @@ impl<S: Element> IntoBox<S> {
 }
 
 // SAFETY: the slots depend on the periodic sides only.
-unsafe impl<S: Element> Text for IntoBox<S> {
+unsafe impl<S: Element> Kernel for IntoBox<S> {
     type Lane = f64;
 
     #[inline(always)]
@@ -67,17 +67,17 @@ unsafe impl<S: Element> Text for IntoBox<S> {
 
 /// Copies Index and Test to the halo of periodic sides. Vector length: the halo cells.
 #[derive(Clone, Copy, Debug)]
-pub struct Images<P>(PhantomData<P>);
+pub struct PrintedImages<P>(PhantomData<P>);
 
-impl<P> Default for Images<P> {
+impl<P> Default for PrintedImages<P> {
     #[inline]
     fn default() -> Self {
-        Images(PhantomData)
+        PrintedImages(PhantomData)
     }
 }
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl<P: Element> Text for Images<P> {
+unsafe impl<P: Element> Kernel for PrintedImages<P> {
     type Lane = f64;
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use super::index::CELL;
 use super::predictor::factor;
 use crate::integrator::gear::{Acceleration, STATE, coefficients};
 use crate::integrator::{FORCE, NOT_FINITE};
-use crate::isa::{Array, Element, Machine, Predicate, Slot, Text, Vector};
+use crate::isa::{Array, Element, Kernel, Machine, Predicate, Slot, Vector};
 use std::marker::PhantomData;
 
 /// r_k ← r_k + C_k (r''corr − r''pr) for `VALUES` unscaled derivatives of each of `FREEDOMS` degrees of freedom. C_k = c_k k!/2
@@ -13,14 +13,16 @@ use std::marker::PhantomData;
 /// # As printed
 /// Appendix A multiplies the coefficients by r''corr; it must be the difference from the predicted one.
 #[derive(Clone, Copy, Debug)]
-pub struct Corrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
+pub struct PrintedCorrector<S, P, const VALUES: usize, const FREEDOMS: usize> {
     coefficients: [f64; 6],
     gravity: [f64; 2],
     checked: bool,
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Corrector<S, P, VALUES, FREEDOMS> {
+impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize>
+    PrintedCorrector<S, P, VALUES, FREEDOMS>
+{
     /// Kernel for steps of `dt` (time) under `gravity` (length/time²); a component of 0 costs nothing.
     #[inline]
     pub fn new(dt: f64, acceleration: Acceleration, gravity: [f64; 2]) -> Self {
@@ -30,20 +32,20 @@ impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Correct
         }
         // Exactly 1 for any dt.
         coefficients[2] = 1.0;
-        Corrector { coefficients, gravity, checked: false, precisions: PhantomData }
+        PrintedCorrector { coefficients, gravity, checked: false, precisions: PhantomData }
     }
 
     /// Makes the kernel also count in [`NOT_FINITE`] the discs whose correction is not finite.
     #[must_use]
     #[inline]
     pub fn checked(self) -> Self {
-        Corrector { checked: true, ..self }
+        PrintedCorrector { checked: true, ..self }
     }
 }
 
 // SAFETY: the slots depend on the const parameters only.
-unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Text
-    for Corrector<S, P, VALUES, FREEDOMS>
+unsafe impl<S: Element, P: Element, const VALUES: usize, const FREEDOMS: usize> Kernel
+    for PrintedCorrector<S, P, VALUES, FREEDOMS>
 {
     type Lane = S;
 

@@ -4,7 +4,7 @@
 
 use crate::isa::Vector;
 use crate::law::granular::Contact;
-use crate::law::{Axis, Env, Field, Law, Sum};
+use crate::law::{Axis, Env, Law, ParticleField, ParticleSum};
 
 /// BP93 (4)–(17) as products of whole vectors: no branch, and no merge except the 1 and 0 of (7).
 ///
@@ -17,7 +17,7 @@ pub struct Printed {
 
 /// Quantities of the own cell.
 #[derive(Clone, Copy)]
-pub struct Own<V> {
+pub struct OwnCell<V> {
     position: [V; 2],
     velocity: [V; 2],
     omega: V,
@@ -29,28 +29,29 @@ pub struct Own<V> {
 }
 
 impl Law<2> for Printed {
-    type Own<V: Copy> = Own<V>;
+    type Own<V: Copy> = OwnCell<V>;
 
-    const FIELDS: &'static [Field] = &[
-        Field::Velocity(Axis::X),
-        Field::Velocity(Axis::Y),
-        Field::Omega,
-        Field::Radius,
-        Field::Mass,
-        Field::Occupied,
+    const FIELDS: &'static [ParticleField] = &[
+        ParticleField::Velocity(Axis::X),
+        ParticleField::Velocity(Axis::Y),
+        ParticleField::Omega,
+        ParticleField::Radius,
+        ParticleField::Mass,
+        ParticleField::Occupied,
     ];
-    const SUMS: &'static [Sum] = &Sum::PLANAR;
+    const SUMS: &'static [ParticleSum] = &ParticleSum::PLANAR;
 
     #[inline(always)]
-    fn own<E: Env<2>>(&self, env: E) -> Own<E::V> {
+    fn own<E: Env<2>>(&self, env: E) -> OwnCell<E::V> {
         env.section("step 3");
         let position = env.own_position();
-        let velocity = [env.own(Field::Velocity(Axis::X)), env.own(Field::Velocity(Axis::Y))];
+        let velocity = [env.own(ParticleField::Velocity(Axis::X)), env.own(ParticleField::Velocity(Axis::Y))];
         let [omega, radius, mass, test] =
-            [Field::Omega, Field::Radius, Field::Mass, Field::Occupied].map(|field| env.own(field));
+            [ParticleField::Omega, ParticleField::Radius, ParticleField::Mass, ParticleField::Occupied]
+                .map(|field| env.own(field));
         env.section("(12)");
         let minus_radius = env.uniform(0.0) - radius;
-        Own { position, velocity, omega, radius, minus_radius, mass, test }
+        OwnCell { position, velocity, omega, radius, minus_radius, mass, test }
     }
 
     /// # As printed
@@ -59,7 +60,7 @@ impl Law<2> for Printed {
     /// the overlap, because without contact it has no value. (15): bounded on both sides. (16): the component along the tangent,
     /// both spins with one sign.
     #[inline(always)]
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &Own<E::V>) {
+    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &OwnCell<E::V>) {
         let Contact { normal_damping, shear_damping, friction, .. } = self.contact;
         let uniform = |value: f64| env.uniform(value);
         let (zero, one) = (uniform(0.0), uniform(1.0));
@@ -69,7 +70,7 @@ impl Law<2> for Printed {
         env.section("(4)");
         let dist = (dx * dx + dy * dy).sqrt();
         env.section("(7)");
-        let radius = env.partner(Field::Radius, place);
+        let radius = env.partner(ParticleField::Radius, place);
         let overlap = (own.radius + radius) - dist;
         let contact = E::V::select(zero.less_than(overlap), one, zero);
         if env.watches() {
@@ -77,11 +78,11 @@ impl Law<2> for Printed {
         }
 
         env.section("(17)");
-        let mass = env.partner(Field::Mass, place);
+        let mass = env.partner(ParticleField::Mass, place);
         let m_eff = (own.mass * mass) / (own.mass + mass);
         env.section("(14)");
-        let vx = own.velocity[0] - env.partner(Field::Velocity(Axis::X), place);
-        let vy = own.velocity[1] - env.partner(Field::Velocity(Axis::Y), place);
+        let vx = own.velocity[0] - env.partner(ParticleField::Velocity(Axis::X), place);
+        let vy = own.velocity[1] - env.partner(ParticleField::Velocity(Axis::Y), place);
         let inverse = one / dist;
         let separation = (vx * dx + vy * dy) * inverse;
         let xi = contact * overlap;
@@ -89,22 +90,22 @@ impl Law<2> for Printed {
         let normal = elastic - (uniform(normal_damping) * m_eff) * separation;
         env.section("(16)");
         let sliding = (vy * dx - vx * dy) * inverse;
-        let v_rel = sliding - own.radius * own.omega - radius * env.partner(Field::Omega, place);
+        let v_rel = sliding - own.radius * own.omega - radius * env.partner(ParticleField::Omega, place);
         env.section("(15)");
         let limit = uniform(friction) * normal.abs();
         let shear = ((uniform(-shear_damping) * m_eff) * v_rel).min(limit).max(zero - limit);
 
         env.section("(8)");
-        let touching = (own.test * env.partner(Field::Occupied, place)) * contact;
+        let touching = (own.test * env.partner(ParticleField::Occupied, place)) * contact;
         let fn_ = touching * normal;
         env.section("(9)");
         let fs = touching * shear;
         env.section("(10)");
-        env.own_add(Sum::Force(Axis::X), inverse * (dx * fn_ - dy * fs));
+        env.own_add(ParticleSum::Force(Axis::X), inverse * (dx * fn_ - dy * fs));
         env.section("(11)");
-        env.own_add(Sum::Force(Axis::Y), inverse * (dy * fn_ + dx * fs));
+        env.own_add(ParticleSum::Force(Axis::Y), inverse * (dy * fn_ + dx * fs));
         env.section("(12)");
-        env.own_add(Sum::Torque, own.minus_radius * fs);
+        env.own_add(ParticleSum::Torque, own.minus_radius * fs);
 
         // Observations beyond the paper: the own disc's share of a pair is proportional to its recoil.
         if env.counts_dissipation() || env.observes_energy() {

@@ -1,7 +1,7 @@
 //! Section 2, step 3: the lattice vectors Index and Test.
 
-use crate::isa::{Array, Element, Machine, Slot, Text, Vector};
-use crate::sweep::lattice::{Frame, LatticeShape};
+use crate::isa::{Array, Element, Kernel, Machine, Slot, Vector};
+use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 use std::marker::PhantomData;
 
 pub(super) const INDEX: Slot<u32> = Slot::new(Array::Index);
@@ -9,17 +9,17 @@ pub(super) const CELL: Slot<u32> = Slot::new(Array::DiscCell);
 
 /// Zeros of (2) and (3), their "0 otherwise". Vector length: the lattice with its halo.
 #[derive(Clone, Copy, Debug)]
-pub struct Clear<P>(PhantomData<P>);
+pub struct PrintedClear<P>(PhantomData<P>);
 
-impl<P> Default for Clear<P> {
+impl<P> Default for PrintedClear<P> {
     #[inline]
     fn default() -> Self {
-        Clear(PhantomData)
+        PrintedClear(PhantomData)
     }
 }
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl<P: Element> Text for Clear<P> {
+unsafe impl<P: Element> Kernel for PrintedClear<P> {
     type Lane = f64;
 
     #[inline(always)]
@@ -36,27 +36,27 @@ unsafe impl<P: Element> Text for Clear<P> {
 /// The cell of each disc is stored: step 5 needs it to return from the lattice to the discs. Positions must be in the box
 /// ([`IntoBox`](super::beside::IntoBox)), otherwise the cell would be beyond the lattice.
 #[derive(Clone, Copy, Debug)]
-pub struct Enter<S, P> {
+pub struct PrintedEnter<S, P> {
     shape: LatticeShape,
-    frame: Frame,
+    frame: LatticeFrame,
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element> Enter<S, P> {
+impl<S: Element, P: Element> PrintedEnter<S, P> {
     /// Kernel for a lattice at `frame`.
     #[inline]
-    pub fn new(shape: LatticeShape, frame: Frame) -> Self {
-        Enter { shape, frame, precisions: PhantomData }
+    pub fn new(shape: LatticeShape, frame: LatticeFrame) -> Self {
+        PrintedEnter { shape, frame, precisions: PhantomData }
     }
 }
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
+unsafe impl<S: Element, P: Element> Kernel for PrintedEnter<S, P> {
     type Lane = f64;
 
     #[inline(always)]
     fn body<M: Machine<Lane = f64>>(&self, m: M) {
-        let Frame { origin, edge } = self.frame;
+        let LatticeFrame { origin, edge } = self.frame;
         m.section("(2)");
         let [x, y] = [Array::X0, Array::Y0].map(|axis| m.load(Slot::<S>::new(axis)));
         let column = ((x - m.uniform(origin[0])) / m.uniform(edge[0])).truncate();

@@ -1,7 +1,7 @@
 //! Section 2, step 3: Index maps the discs' observables to lattice vectors.
 
 use super::index::INDEX;
-use crate::isa::{Array, Element, Machine, Slot, Text};
+use crate::isa::{Array, Element, Kernel, Machine, Slot};
 use crate::sweep::lattice::LatticeShape;
 use std::marker::PhantomData;
 
@@ -14,21 +14,21 @@ use std::marker::PhantomData;
 /// BP93 does not define particle 0. Read literally, all empty cells have one position, and (10) to (12) divide by their distance.
 /// Here each empty cell adds a position of its own, far from everything, by (1 − Test)·far, which is exact.
 #[derive(Clone, Copy, Debug)]
-pub struct Map<S, P> {
+pub struct PrintedMap<S, P> {
     periodic: [bool; 2],
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element> Map<S, P> {
+impl<S: Element, P: Element> PrintedMap<S, P> {
     /// Kernel for a lattice.
     #[inline]
     pub fn new(shape: LatticeShape) -> Self {
-        Map { periodic: shape.periodic(), precisions: PhantomData }
+        PrintedMap { periodic: shape.periodic(), precisions: PhantomData }
     }
 }
 
 // SAFETY: the slots depend on the periodic sides only.
-unsafe impl<S: Element, P: Element> Text for Map<S, P> {
+unsafe impl<S: Element, P: Element> Kernel for PrintedMap<S, P> {
     type Lane = P;
 
     #[inline(always)]

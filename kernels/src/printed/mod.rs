@@ -43,11 +43,11 @@ mod index;
 mod lattice;
 mod predictor;
 
-pub use corrector::Corrector;
+pub use corrector::PrintedCorrector;
 pub use forces::Printed;
-pub use index::{Clear, Enter};
-pub use lattice::Map;
-pub use predictor::Predictor;
+pub use index::{PrintedClear, PrintedEnter};
+pub use lattice::PrintedMap;
+pub use predictor::PrintedPredictor;
 
 use crate::isa::Array;
 

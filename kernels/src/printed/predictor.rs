@@ -1,22 +1,22 @@
 //! Appendix A, step 1: positions and derivatives one step ahead.
 
 use crate::integrator::gear::STATE;
-use crate::isa::{Element, Machine, Slot, Text};
+use crate::isa::{Element, Kernel, Machine, Slot};
 use std::marker::PhantomData;
 
 /// Taylor expansion of `VALUES` unscaled derivatives of each of `FREEDOMS` degrees of freedom: r_k ← r_k + δt r_{k+1} + ½ δt²
 /// r_{k+2} + …, term by term from the left. Vector length: the discs that move.
 #[derive(Clone, Copy, Debug)]
-pub struct Predictor<S, const VALUES: usize, const FREEDOMS: usize> {
+pub struct PrintedPredictor<S, const VALUES: usize, const FREEDOMS: usize> {
     dt: f64,
     precision: PhantomData<S>,
 }
 
-impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Predictor<S, VALUES, FREEDOMS> {
+impl<S: Element, const VALUES: usize, const FREEDOMS: usize> PrintedPredictor<S, VALUES, FREEDOMS> {
     /// Kernel for steps of `dt` (time).
     #[inline]
     pub fn new(dt: f64) -> Self {
-        Predictor { dt, precision: PhantomData }
+        PrintedPredictor { dt, precision: PhantomData }
     }
 }
 
@@ -27,7 +27,9 @@ pub(super) fn factor(dt: f64, k: usize) -> f64 {
 }
 
 // SAFETY: the slots depend on the const parameters only.
-unsafe impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Text for Predictor<S, VALUES, FREEDOMS> {
+unsafe impl<S: Element, const VALUES: usize, const FREEDOMS: usize> Kernel
+    for PrintedPredictor<S, VALUES, FREEDOMS>
+{
     type Lane = S;
 
     #[allow(clippy::needless_range_loop, reason = "several lists share one index")]

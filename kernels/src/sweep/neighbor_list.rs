@@ -5,23 +5,23 @@
 //! such partners come last, in the order of their numbers.
 
 use crate::backend::Precision;
-use crate::law::{Asked, Env, Field, Law, Stated, Sum};
+use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
 use crate::mask::Mask;
-use crate::sweep::lattice::{Frame, LatticeShape};
+use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 use std::cell::Cell;
 
 /// Neighbour list of each disc; each pair is in both lists.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Lists {
+pub struct NeighbourLists {
     first: Vec<u32>,
     partners: Vec<u32>,
 }
 
-impl Lists {
+impl NeighbourLists {
     /// Lists all pairs for which `near` is true, by trying every pair: O(N²), as in BP93.
     #[inline]
-    pub fn by_all_pairs(discs: usize, near: impl Fn(usize, usize) -> bool) -> Lists {
-        Lists::collect(discs, |i, list| {
+    pub fn by_all_pairs(discs: usize, near: impl Fn(usize, usize) -> bool) -> NeighbourLists {
+        NeighbourLists::collect(discs, |i, list| {
             list.extend((0..discs).filter(|&j| j != i && near(i, j)).map(|j| j as u32))
         })
     }
@@ -32,8 +32,8 @@ impl Lists {
         discs: usize,
         candidates: impl Fn(usize, &mut dyn FnMut(u32)),
         near: impl Fn(usize, usize) -> bool,
-    ) -> Lists {
-        Lists::collect(discs, |i, list| {
+    ) -> NeighbourLists {
+        NeighbourLists::collect(discs, |i, list| {
             candidates(i, &mut |j| {
                 if j as usize != i && near(i, j as usize) {
                     list.push(j);
@@ -43,8 +43,8 @@ impl Lists {
     }
 
     #[inline]
-    fn collect(discs: usize, mut fill: impl FnMut(usize, &mut Vec<u32>)) -> Lists {
-        let mut lists = Lists { first: vec![0], partners: Vec::new() };
+    fn collect(discs: usize, mut fill: impl FnMut(usize, &mut Vec<u32>)) -> NeighbourLists {
+        let mut lists = NeighbourLists { first: vec![0], partners: Vec::new() };
         for i in 0..discs {
             fill(i, &mut lists.partners);
             lists.first.push(lists.partners.len() as u32);
@@ -67,7 +67,7 @@ impl Lists {
 
 /// Quantities of the discs, one entry per disc; quantities that the law does not read may be empty.
 #[derive(Clone, Copy)]
-pub struct Discs<'a, P> {
+pub struct ListDiscs<'a, P> {
     /// Positions, absolute or relative to the cell.
     pub position: [&'a [P]; 2],
     /// Velocities.
@@ -86,7 +86,7 @@ pub struct Discs<'a, P> {
 
 /// Result of a walk through the lists.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Met {
+pub struct ListReport {
     /// Pairs the law was evaluated for, each from both sides.
     pub pairs: u64,
     /// Contacts deeper than the watched depth: disc and partner, each from both sides.
@@ -111,7 +111,7 @@ pub struct CellOffsets {
 impl CellOffsets {
     /// Table for a full mask on a lattice; `relative` is true for positions relative to the cell.
     #[inline]
-    pub fn new(shape: LatticeShape, frame: Frame, mask: &Mask, relative: bool) -> CellOffsets {
+    pub fn new(shape: LatticeShape, frame: LatticeFrame, mask: &Mask, relative: bool) -> CellOffsets {
         let half_width = mask.half_width() as isize;
         let side = 2 * half_width + 1;
         let mut place = vec![None; (side * side) as usize];
@@ -154,15 +154,15 @@ impl CellOffsets {
 
 /// A partner at its offset.
 #[derive(Clone, Copy)]
-struct Partner<P> {
+struct ListPartner<P> {
     disc: usize,
     place: u16,
     displacement: [P; 2],
 }
 
 /// Environment of a law that evaluates one disc and one partner at a time.
-struct OneByOne<'a, P> {
-    discs: Discs<'a, P>,
+struct ListEnv<'a, P> {
+    discs: ListDiscs<'a, P>,
     own: usize,
     watches: bool,
     penetration: Cell<P>,
@@ -170,27 +170,27 @@ struct OneByOne<'a, P> {
     power: Cell<P>,
     observes_energy: bool,
     energy: [Cell<P>; 2],
-    sums: [Cell<P>; Sum::PLANAR.len()],
+    sums: [Cell<P>; ParticleSum::PLANAR.len()],
 }
 
-impl<'a, P: Precision> OneByOne<'a, P> {
+impl<'a, P: Precision> ListEnv<'a, P> {
     #[inline]
-    fn field(&self, field: Field, disc: usize) -> P {
-        let Discs { velocity, omega, radius, inverse_mass, mass, .. } = self.discs;
+    fn field(&self, field: ParticleField, disc: usize) -> P {
+        let ListDiscs { velocity, omega, radius, inverse_mass, mass, .. } = self.discs;
         match field {
-            Field::Velocity(axis) => velocity[axis as usize][disc],
-            Field::Omega => omega[disc],
-            Field::Radius => radius[disc],
-            Field::InverseMass => inverse_mass[disc],
-            Field::Mass => mass[disc],
-            Field::Occupied => P::from_f64(1.0),
+            ParticleField::Velocity(axis) => velocity[axis as usize][disc],
+            ParticleField::Omega => omega[disc],
+            ParticleField::Radius => radius[disc],
+            ParticleField::InverseMass => inverse_mass[disc],
+            ParticleField::Mass => mass[disc],
+            ParticleField::Occupied => P::from_f64(1.0),
         }
     }
 }
 
-impl<P: Precision> Env<2> for &OneByOne<'_, P> {
+impl<P: Precision> Env<2> for &ListEnv<'_, P> {
     type V = P;
-    type Place = Partner<P>;
+    type Place = ListPartner<P>;
     const BOTH_PARTNERS: bool = false;
 
     #[inline]
@@ -198,15 +198,15 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
         self.discs.position.map(|axis| axis[self.own])
     }
     #[inline]
-    fn own(self, field: Field) -> P {
+    fn own(self, field: ParticleField) -> P {
         self.field(field, self.own)
     }
     #[inline]
-    fn displacement(self, _: [P; 2], place: Partner<P>) -> [P; 2] {
+    fn displacement(self, _: [P; 2], place: ListPartner<P>) -> [P; 2] {
         place.displacement
     }
     #[inline]
-    fn partner(self, field: Field, place: Partner<P>) -> P {
+    fn partner(self, field: ParticleField, place: ListPartner<P>) -> P {
         self.field(field, place.disc)
     }
     #[inline]
@@ -218,13 +218,13 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
         !predicate
     }
     #[inline]
-    fn own_add(self, sum: Sum, value: P) {
+    fn own_add(self, sum: ParticleSum, value: P) {
         let cell = &self.sums[sum.column::<2>()];
         cell.set(cell.get() + value);
     }
     #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
-    fn partner_sub(self, _: Sum, _: Partner<P>, _: P) {
+    fn partner_sub(self, _: ParticleSum, _: ListPartner<P>, _: P) {
         unreachable!("every pair is visited from both sides")
     }
     #[inline]
@@ -263,20 +263,20 @@ impl<P: Precision> Env<2> for &OneByOne<'_, P> {
 /// `grains` discs. Pairs farther apart than `reach` (length) are skipped. `asked` selects the observations beside the sums.
 pub fn walk<P: Precision, L: Law<2>>(
     law: &L,
-    lists: &Lists,
+    lists: &NeighbourLists,
     cell_offsets: &CellOffsets,
-    discs: Discs<'_, P>,
+    discs: ListDiscs<'_, P>,
     grains: usize,
     reach: f64,
-    asked: Asked,
+    asked: ObservationRequest,
     mut write: impl FnMut(usize, [P; 3]),
-) -> Met {
+) -> ListReport {
     let zero = P::from_f64(0.0);
     let square = P::from_f64(reach * reach);
     let places: Vec<[isize; 2]> = discs.cell.iter().map(|&cell| cell_offsets.column_and_row(cell)).collect();
-    let mut met = Met::default();
-    let mut contacts: Vec<Partner<P>> = Vec::new();
-    let mut env = OneByOne {
+    let mut met = ListReport::default();
+    let mut contacts: Vec<ListPartner<P>> = Vec::new();
+    let mut env = ListEnv {
         discs,
         own: 0,
         watches: asked.watched.is_some(),
@@ -308,11 +308,11 @@ pub fn walk<P: Precision, L: Law<2>>(
                 }
             });
             if displacement[0] * displacement[0] + displacement[1] * displacement[1] < square {
-                contacts.push(Partner { disc: j, place, displacement });
+                contacts.push(ListPartner { disc: j, place, displacement });
             }
         }
         contacts.sort_unstable_by_key(|partner| (partner.place, partner.disc));
-        let met_one = Stated::new(&env, law);
+        let met_one = StatedEnv::new(&env, law);
         let own = law.own(met_one);
         for partner in &contacts {
             law.pair(met_one, *partner, &own);

@@ -4,20 +4,22 @@
 use rand::RngExt;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
-use stripmine_kernels::integrator::gear::{Acceleration, Corrector, Predictor, STATE};
+use stripmine_kernels::integrator::gear::{Acceleration, GearCorrector, GearPredictor, STATE};
 use stripmine_kernels::isa::{Array, Memory, ProgramError, Slot};
-use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::granular::{Contact, ContactArm, EqualDiscs, Granular};
 use stripmine_kernels::law::spring::Spring;
-use stripmine_kernels::law::{Asked, Field, Law, Sum};
+use stripmine_kernels::law::{Law, ObservationRequest, ParticleField, ParticleSum};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{self, Finder, SENTINELS, Sweep};
-use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, Check, Clear, Enter, Images, STRAYS};
+use stripmine_kernels::sweep::lattice::cells::{
+    CONFLICTS, CheckIndex, ClearIndex, EnterDiscs, IndexImages, STRAYS,
+};
 use stripmine_kernels::sweep::lattice::forces::Forces;
-use stripmine_kernels::sweep::lattice::vectors::Spread;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
-use stripmine_kernels::sweep::pair::{Body, Pair};
+use stripmine_kernels::sweep::lattice::vectors::SpreadToLattice;
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame, LatticeShape};
+use stripmine_kernels::sweep::pair::{Pair, PairBody};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 pub const CONTACT: Contact = Contact {
@@ -63,7 +65,7 @@ impl Case {
 #[derive(Clone, Debug)]
 pub struct System<S, P> {
     pub shape: LatticeShape,
-    pub frame: Frame,
+    pub frame: LatticeFrame,
     pub discs: usize,
     pub state: [[Vec<S>; 6]; 3],
     pub inverse_mass: Vec<S>,
@@ -105,8 +107,8 @@ impl<S: Precision, P: Precision> System<S, P> {
         let shape = LatticeShape::new(case.columns, case.rows, &mask, case.periodic).unwrap();
         // Cells as wide as the largest radius for 5×5; smaller for wider masks.
         let edge = 1.1 * 2.0 / f64::from(case.half_width);
-        let frame = Frame { origin: [-3.0, 2.0], edge: [edge, edge * 1.01] };
-        let mut random = Stream::new(case.seed, Purpose::Test, 0);
+        let frame = LatticeFrame { origin: [-3.0, 2.0], edge: [edge, edge * 1.01] };
+        let mut random = Stream::new(case.seed, RandomPurpose::Test, 0);
         let mut rows: [[Vec<S>; 6]; 3] = Default::default();
         let mut radius = vec![];
         for row in 0..case.rows {
@@ -160,15 +162,15 @@ impl<S: Precision, P: Precision> System<S, P> {
     }
 
     /// Given discs on a lattice at `frame`; derivatives beyond the velocity are zero.
-    pub fn placed(case: &Case, frame: Frame, discs: &[Body]) -> Self {
+    pub fn placed(case: &Case, frame: LatticeFrame, discs: &[PairBody]) -> Self {
         let mut system = Self::random(&Case { fill: 0.0, ..*case });
-        let column = |of: &dyn Fn(&Body) -> f64| discs.iter().map(|disc| P::from_f64(of(disc))).collect();
-        let state = |of: &dyn Fn(&Body) -> f64| discs.iter().map(|disc| S::from_f64(of(disc))).collect();
+        let column = |of: &dyn Fn(&PairBody) -> f64| discs.iter().map(|disc| P::from_f64(of(disc))).collect();
+        let state = |of: &dyn Fn(&PairBody) -> f64| discs.iter().map(|disc| S::from_f64(of(disc))).collect();
         for (axis, row) in system.state.iter_mut().enumerate() {
             for q in row.iter_mut() {
                 *q = vec![S::from_f64(0.0); discs.len()];
             }
-            let rate = |disc: &Body| [disc.velocity[0], disc.velocity[1], disc.omega][axis];
+            let rate = |disc: &PairBody| [disc.velocity[0], disc.velocity[1], disc.omega][axis];
             row[0] = state(&|disc| [disc.position[0], disc.position[1], 0.0][axis]);
             row[1] = state(&|disc| rate(disc) * DT);
             system.velocity[axis] = column(&rate);
@@ -258,12 +260,12 @@ impl<S: Precision, P: Precision> System<S, P> {
         let (shape, frame, discs, images) = (self.shape, self.frame, self.discs, halo[0].len());
         self.memory(&halo, &constant, |memory| {
             let (execution, set) = how;
-            Program::new(Clear).run(memory, 0..shape.padded(), execution, set).unwrap();
-            let enter = Enter::<S, P>::new(shape, frame, case.coordinates);
+            Program::new(ClearIndex).run(memory, 0..shape.padded(), execution, set).unwrap();
+            let enter = EnterDiscs::<S, P>::new(shape, frame, case.coordinates);
             Program::new(enter).run(memory, 0..discs, execution, set).unwrap();
-            Program::new(Check).run(memory, 0..discs, execution, set).unwrap();
-            Program::new(Images).run(memory, 0..images, execution, set).unwrap();
-            let spread = Spread::<P>::new(shape, case.coordinates, L::FIELDS);
+            Program::new(CheckIndex).run(memory, 0..discs, execution, set).unwrap();
+            Program::new(IndexImages).run(memory, 0..images, execution, set).unwrap();
+            let spread = SpreadToLattice::<P>::new(shape, case.coordinates, L::FIELDS);
             Program::new(spread).run(memory, 0..shape.padded(), execution, set).unwrap();
         });
     }
@@ -275,7 +277,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         law: &L,
         how: (Execution, InstructionSet),
     ) -> Result<(), ProgramError> {
-        self.forces_and(case, law, how, Asked::default())
+        self.forces_and(case, law, how, ObservationRequest::default())
     }
 
     /// Computes forces and the requested observations, which are stored in [`observed`](Self::observed).
@@ -284,7 +286,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         case: &Case,
         law: &L,
         (execution, set): (Execution, InstructionSet),
-        asked: Asked,
+        asked: ObservationRequest,
     ) -> Result<(), ProgramError> {
         let mask = Mask::square(case.half_width);
         let shape = self.shape;
@@ -301,7 +303,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         law: &L,
         order: &[u32],
         set: InstructionSet,
-    ) -> Result<(Vec<[P; 3]>, fast::Met), ProgramError> {
+    ) -> Result<(Vec<[P; 3]>, fast::SweepReport), ProgramError> {
         let far = 100.0;
         let sorted = |column: &[S], sentinels: [f64; SENTINELS]| -> Vec<S> {
             let there = order.iter().map(|&disc| column[disc as usize]);
@@ -311,8 +313,13 @@ impl<S: Precision, P: Precision> System<S, P> {
             let column: Vec<S> = column.iter().map(|x| S::from_f64(x.to_f64())).collect();
             sorted(&column, [1.0; SENTINELS])
         };
-        let mut occupancy =
-            Occupancy::new(self.shape, self.frame, self.discs, 2.2, L::FIELDS.contains(&Field::Radius));
+        let mut occupancy = Occupancy::new(
+            self.shape,
+            self.frame,
+            self.discs,
+            2.2,
+            L::FIELDS.contains(&ParticleField::Radius),
+        );
         let mut places = [vec![S::default(); self.discs], vec![S::default(); self.discs]];
         for (n, &disc) in order.iter().enumerate() {
             let disc = disc as usize;
@@ -330,7 +337,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         let places = [sorted(&places[0], [0.0, far]), sorted(&places[1], [0.0, far])];
         let velocity = self.velocity.each_ref().map(|column| state(column));
         let (radius, inverse_mass) = (state(&self.radius), state(&self.lattice_inverse_mass));
-        let discs = fast::Discs {
+        let discs = fast::DiscColumns {
             place: [&places[0], &places[1]],
             velocity: [&velocity[0], &velocity[1]],
             omega: &velocity[2],
@@ -343,7 +350,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         let codes = Codes::new(&occupancy, self.frame);
         let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
         let mut sweep = Sweep::new(Finder::<S, P>::rows(&lattice));
-        let asked = Asked { watched: Some(0.1), dissipation: true, energy: true };
+        let asked = ObservationRequest { watched: Some(0.1), dissipation: true, energy: true };
         let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], asked, set)?;
         let mut forces = vec![[P::default(); 3]; self.discs];
         for (n, &disc) in order.iter().enumerate() {
@@ -363,13 +370,13 @@ impl<S: Precision, P: Precision> System<S, P> {
         let none = [vec![], vec![], vec![], vec![]];
         let discs = self.discs;
         self.memory(&Default::default(), &none, |memory| {
-            let predictor = Predictor::<S, P, VALUES, FREEDOMS>::new(DT);
+            let predictor = GearPredictor::<S, P, VALUES, FREEDOMS>::new(DT);
             Program::new(predictor).run(memory, 0..discs, how.0, how.1).unwrap();
         });
         self.index(case, law, how);
         self.forces(case, law, how).unwrap();
         self.memory(&Default::default(), &none, |memory| {
-            let corrector = Corrector::<S, P, VALUES, FREEDOMS>::new(
+            let corrector = GearCorrector::<S, P, VALUES, FREEDOMS>::new(
                 DT,
                 Acceleration::OfVelocities,
                 inertia,
@@ -389,7 +396,7 @@ impl<S: Precision, P: Precision> System<S, P> {
     }
 
     /// Force or torque on each disc, gathered from the lattice.
-    pub fn on_discs(&self, sum: Sum) -> Vec<f64> {
+    pub fn on_discs(&self, sum: ParticleSum) -> Vec<f64> {
         self.cell
             .iter()
             .map(
@@ -402,11 +409,11 @@ impl<S: Precision, P: Precision> System<S, P> {
 }
 
 pub fn varying<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, false> {
-    Granular { contact, disc: Disc { radius: f64::NAN, inverse_mass: f64::NAN } }
+    Granular { contact, disc: EqualDiscs { radius: f64::NAN, inverse_mass: f64::NAN } }
 }
 
 pub fn equal<const FRICTION: bool>(contact: Contact) -> Granular<FRICTION, true> {
-    Granular { contact, disc: Disc { radius: 1.0, inverse_mass: 1.0 } }
+    Granular { contact, disc: EqualDiscs { radius: 1.0, inverse_mass: 1.0 } }
 }
 
 /// Options of the law that change forces: clamped or not, and the arms.
@@ -422,7 +429,7 @@ pub fn contacts() -> impl Iterator<Item = Contact> {
 
 /// Random pairs in contact.
 pub fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
-    let mut random = Stream::new(seed, Purpose::Test, 0);
+    let mut random = Stream::new(seed, RandomPurpose::Test, 0);
     (0..count).map(move |_| Pair::random(&mut random))
 }
 

@@ -6,11 +6,11 @@ use crate::statistics::quantile;
 use clap::builder::PossibleValue;
 use std::path::Path;
 use stripmine_physics::domain::Domain;
-use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::extxyz::ParticleFrame;
 use stripmine_physics::method::{Methods, load};
 use stripmine_physics::particles::Particle;
-use stripmine_physics::reported::{Class, Reported};
-use stripmine_physics::structure::{PairForces, Setting, forces_on_each, hexatic_orders};
+use stripmine_physics::reported::{ErrorClass, Reported};
+use stripmine_physics::structure::{PairForces, StructureSetting, forces_on_each, hexatic_orders};
 
 /// Quantile of the values that has the last colour, so that few large values do not darken all others.
 const MOST: f64 = 0.99;
@@ -26,7 +26,7 @@ pub(super) struct Colouring {
     /// SI unit; none for pure numbers.
     si: Option<&'static str>,
     /// Value of each grain of a frame, or the reason why it has none.
-    of: fn(&Frame, Option<&PairForces>) -> Result<Vec<f64>, &'static str>,
+    of: fn(&ParticleFrame, Option<&PairForces>) -> Result<Vec<f64>, &'static str>,
     /// True if it needs the forces of the run's scene.
     takes_forces: bool,
     /// Values of the lowest and the highest colour, from all sorted values, or the reason why there are none.
@@ -95,7 +95,7 @@ static COLOURINGS: [Colouring; 6] = [
     },
 ];
 
-fn of_each(frame: &Frame, value: impl Fn(&Particle) -> f64) -> Vec<f64> {
+fn of_each(frame: &ParticleFrame, value: impl Fn(&Particle) -> f64) -> Vec<f64> {
     frame.particles.grains().iter().map(value).collect()
 }
 
@@ -104,7 +104,7 @@ fn first_and_last(values: &[f64]) -> Result<[f64; 2], &'static str> {
 }
 
 /// Box of a frame, or a closed box around the discs if the frame has none.
-fn room(frame: &Frame) -> Domain {
+fn room(frame: &ParticleFrame) -> Domain {
     let grains = frame.particles.grains();
     if window::is_endless(frame) {
         let ends = |axis: usize| {
@@ -120,16 +120,16 @@ fn room(frame: &Frame) -> Domain {
 }
 
 /// Sum of the magnitudes of the forces on each grain.
-fn forces_on(frame: &Frame, forces: Option<&PairForces>) -> Result<Vec<f64>, &'static str> {
+fn forces_on(frame: &ParticleFrame, forces: Option<&PairForces>) -> Result<Vec<f64>, &'static str> {
     let forces = forces.ok_or("the scene has no continuous pair forces, or cannot be read")?;
-    let setting = Setting::new(room(frame), &frame.particles);
+    let setting = StructureSetting::new(room(frame), &frame.particles);
     let mut sums = forces_on_each(&setting, frame.particles.all(), forces);
     sums.truncate(frame.particles.grain_count());
     Ok(sums)
 }
 
 /// |ψ6| of each grain.
-fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
+fn orders(frame: &ParticleFrame) -> Result<Vec<f64>, &'static str> {
     let grains = frame.particles.grains();
     if grains.iter().any(|grain| grain.position[2] != 0.0) {
         return Err("bodies in space have no hexatic order");
@@ -137,7 +137,7 @@ fn orders(frame: &Frame) -> Result<Vec<f64>, &'static str> {
     if grains.is_empty() {
         return Ok(vec![]);
     }
-    let setting = Setting::new(room(frame), &frame.particles);
+    let setting = StructureSetting::new(room(frame), &frame.particles);
     Ok(hexatic_orders(&setting, &frame.particles).into_iter().map(|[x, y]| x.hypot(y)).collect())
 }
 
@@ -151,8 +151,8 @@ pub(super) struct ColouringError {
 }
 
 impl Reported for ColouringError {
-    fn class(&self) -> Class {
-        Class::Usage
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Usage
     }
 }
 
@@ -164,7 +164,7 @@ impl Colouring {
 }
 
 /// Colouring of the particles of one run.
-pub(super) struct Colours {
+pub(super) struct RunColouring {
     colouring: &'static Colouring,
     /// True if `--color` was given.
     pub(super) is_chosen: bool,
@@ -172,9 +172,9 @@ pub(super) struct Colours {
     forces: Option<PairForces>,
 }
 
-impl Colours {
+impl RunColouring {
     /// Colouring named by a word, or the default.
-    pub(super) fn new(word: Option<&str>, run: &Path, methods: Methods) -> Colours {
+    pub(super) fn new(word: Option<&str>, run: &Path, methods: Methods) -> RunColouring {
         let colouring = COLOURINGS.iter().find(|it| Some(it.word) == word).unwrap_or(&COLOURINGS[0]);
         let forces = || {
             let scene = run.join("scene.toml");
@@ -182,14 +182,14 @@ impl Colours {
             prepared.model.pair_forces()
         };
         let forces = if colouring.takes_forces { forces() } else { None };
-        Colours { colouring, is_chosen: word.is_some(), forces }
+        RunColouring { colouring, is_chosen: word.is_some(), forces }
     }
 
     /// Values of the grains of a frame.
     ///
     /// # Errors
     /// If the particles have no such values.
-    pub(super) fn values(&self, frame: &Frame) -> Result<Vec<f64>, ColouringError> {
+    pub(super) fn values(&self, frame: &ParticleFrame) -> Result<Vec<f64>, ColouringError> {
         (self.colouring.of)(frame, self.forces.as_ref()).map_err(|why| self.none(why))
     }
 

@@ -1,20 +1,20 @@
 //! Film of a run: the frames of its trajectory in one HTML page.
 
-use super::colouring::{ColouringError, Colours};
+use super::colouring::{ColouringError, RunColouring};
 use super::particles::{SHOWN, WIDTH, point};
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
-use crate::report::section::{Film, Frame as Moment, Side};
+use crate::report::section::{Film, FilmFrame as Moment, FilmSide};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use stripmine_physics::io::FORMATS;
-use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::extxyz::ParticleFrame;
 use stripmine_physics::io::output_format::OutputFormat;
 use stripmine_physics::io::trajectory::{FrameReading, Trajectory, TrajectoryError};
 use stripmine_physics::number::{counted, significant};
-use stripmine_physics::particles::{Kind, Particle};
+use stripmine_physics::particles::{Particle, ParticleKind};
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, FilePlace, Reported};
+use stripmine_physics::reported::{ErrorClass, FilePlace, Reported};
 
 /// Most positions in a film: at two bytes per coordinate and at most two per shade, in base 64, less than 20 million bytes.
 const PLACES: usize = 2_400_000;
@@ -49,10 +49,10 @@ pub(super) enum FilmError {
 }
 
 impl Reported for FilmError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
-            FilmError::Trajectory(error) if error.is_of_system => Class::InputOutput,
-            FilmError::NoFrame { .. } | FilmError::Trajectory(_) => Class::Input,
+            FilmError::Trajectory(error) if error.is_of_system => ErrorClass::InputOutput,
+            FilmError::NoFrame { .. } | FilmError::Trajectory(_) => ErrorClass::Input,
             FilmError::Colouring(error) => error.class(),
         }
     }
@@ -87,10 +87,10 @@ fn others(run: &Path) -> String {
 ///
 /// # Errors
 /// If the trajectory is missing or cannot be read, or its particles cannot be coloured this way.
-pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>), FilmError> {
+pub(super) fn film(run: &Path, colours: &RunColouring) -> Result<(Film, Vec<String>), FilmError> {
     let trajectory = Trajectory::open(run)?;
     let file = trajectory.path().to_owned();
-    let mut reel = Reel::default();
+    let mut reel = FilmFrames::default();
     for frame in trajectory {
         reel.add(frame?, colours)?;
     }
@@ -105,7 +105,7 @@ pub(super) fn film(run: &Path, colours: &Colours) -> Result<(Film, Vec<String>),
 }
 
 /// Particles in the film, as of the first frame.
-struct Cast {
+struct FilmParticles {
     /// Index of each particle in every frame, by its id.
     places: HashMap<u32, usize>,
     particles: Vec<Particle>,
@@ -113,38 +113,38 @@ struct Cast {
     every: usize,
 }
 
-impl Cast {
-    fn of(frame: &Frame) -> Cast {
+impl FilmParticles {
+    fn of(frame: &ParticleFrame) -> FilmParticles {
         let all = frame.particles.all();
         let every = all.len().div_ceil(SHOWN).max(1);
         let particles: Vec<Particle> = all.iter().step_by(every).copied().collect();
         let places = particles.iter().enumerate().map(|(place, particle)| (particle.id, place)).collect();
-        Cast { places, particles, every }
+        FilmParticles { places, particles, every }
     }
 }
 
 /// Frames read so far. When there are too many, every other one is dropped.
 #[derive(Default)]
-struct Reel {
+struct FilmFrames {
     /// Frames read.
     read: usize,
     /// Every `stride`-th frame is kept, all if less than 2. It doubles when frames are dropped.
     stride: usize,
-    kept: Vec<(f64, Vec<Option<Seen>>)>,
+    kept: Vec<(f64, Vec<Option<FilmPosition>>)>,
     /// The latest frame, and the cast.
-    last: Option<(Frame, Cast)>,
+    last: Option<(ParticleFrame, FilmParticles)>,
 }
 
 /// Position of a particle in a frame, and its value if it has one.
 #[derive(Clone, Copy)]
-struct Seen {
+struct FilmPosition {
     position: [f64; 3],
     value: f64,
 }
 
-impl Reel {
-    fn add(&mut self, frame: Frame, colours: &Colours) -> Result<(), FilmError> {
-        let cast = self.last.take().map_or_else(|| Cast::of(&frame), |(_, cast)| cast);
+impl FilmFrames {
+    fn add(&mut self, frame: ParticleFrame, colours: &RunColouring) -> Result<(), FilmError> {
+        let cast = self.last.take().map_or_else(|| FilmParticles::of(&frame), |(_, cast)| cast);
         if self.read.is_multiple_of(self.stride.max(1)) {
             let values = colours.values(&frame)?;
             let mut seen = vec![None; cast.particles.len()];
@@ -152,7 +152,7 @@ impl Reel {
             for (at, particle) in frame.particles.all().iter().enumerate() {
                 if let Some(&place) = cast.places.get(&particle.id) {
                     let value = values.get(at).copied().unwrap_or(f64::NAN);
-                    seen[place] = Some(Seen { position: particle.position, value });
+                    seen[place] = Some(FilmPosition { position: particle.position, value });
                 }
             }
             self.kept.push((frame.time, seen));
@@ -169,9 +169,9 @@ impl Reel {
 
     fn film(
         self,
-        last: &Frame,
-        cast: Cast,
-        colours: &Colours,
+        last: &ParticleFrame,
+        cast: FilmParticles,
+        colours: &RunColouring,
         scene: Option<&toml::Table>,
     ) -> Result<(Film, Vec<String>), FilmError> {
         const AXES: [usize; 2] = [0, 1];
@@ -192,17 +192,17 @@ impl Reel {
         // Fixed walls are drawn once.
         let is_still = |place: usize| {
             let Particle { kind, position: first, radius, .. } = cast.particles[place];
-            let stays = |(_, seen): &(f64, Vec<Option<Seen>>)| {
+            let stays = |(_, seen): &(f64, Vec<Option<FilmPosition>>)| {
                 let is_near = |(a, b): (f64, f64)| (a - b).abs() <= STILL * radius;
                 seen[place].is_some_and(|it| it.position.into_iter().zip(first).all(is_near))
             };
-            kind == Kind::Wall && self.kept.iter().all(stays)
+            kind == ParticleKind::Wall && self.kept.iter().all(stays)
         };
         let (fixed, moving): (Vec<usize>, Vec<usize>) =
             (0..cast.particles.len()).partition(|&at| is_still(at));
         let mut beyond = 0;
-        let mut disc = |seen: &[Option<Seen>], place: usize| match seen[place] {
-            Some(Seen { position, value }) if is_seen(position, radius(&cast.particles[place])) => {
+        let mut disc = |seen: &[Option<FilmPosition>], place: usize| match seen[place] {
+            Some(FilmPosition { position, value }) if is_seen(position, radius(&cast.particles[place])) => {
                 ([position[0], position[1]], value)
             }
             other => {
@@ -219,7 +219,7 @@ impl Reel {
             })
             .collect();
         let window = [[left, low], [right, high]];
-        let grain_count = cast.particles.iter().filter(|it| it.kind == Kind::Grain).count();
+        let grain_count = cast.particles.iter().filter(|it| it.kind == ParticleKind::Grain).count();
         let gravity = scene.and_then(|scene| window::pair(scene, "gravity")).unwrap_or([0.0; 2]);
         let [width, height] = [right - left, high - low];
         let film = Film {
@@ -249,7 +249,7 @@ impl Reel {
     }
 
     /// Notes for the viewer: what is not shown, the fraction of positions outside the picture, and how things are drawn.
-    fn notes(&self, cast: &Cast, film: &Film, is_of_points: bool, beyond: f64) -> Vec<String> {
+    fn notes(&self, cast: &FilmParticles, film: &Film, is_of_points: bool, beyond: f64) -> Vec<String> {
         let mut seen = self.kept.iter().flat_map(|(_, seen)| seen).flatten();
         let notes = [
             (self.read == 1).then(|| {
@@ -274,7 +274,7 @@ impl Reel {
 }
 
 /// Sides of the box that lie within a window.
-fn sides(frame: &Frame, bounds: [[f64; 2]; 2], [corner, end]: [[f64; 2]; 2]) -> Vec<Side> {
+fn sides(frame: &ParticleFrame, bounds: [[f64; 2]; 2], [corner, end]: [[f64; 2]; 2]) -> Vec<FilmSide> {
     let mut sides = vec![];
     for axis in [0, 1] {
         let is_periodic = window::is_periodic(frame, axis);
@@ -283,7 +283,7 @@ fn sides(frame: &Frame, bounds: [[f64; 2]; 2], [corner, end]: [[f64; 2]; 2]) -> 
                 place[axis] = at;
                 place
             });
-            sides.push(Side { ends, is_periodic });
+            sides.push(FilmSide { ends, is_periodic });
         }
     }
     sides

@@ -1,8 +1,8 @@
 //! Means on the charts of observables: a ribbon after the transient, and a band over the transient.
 
-use crate::report::figure::{Band, Series, Style};
-use stripmine_physics::averages::{Average, Averages, Estimate, Outcome, Rows};
-use stripmine_physics::method::{Kind, Methods, observer};
+use crate::report::figure::{ChartBand, Series, Style};
+use stripmine_physics::averages::{Average, AverageOutcome, AveragedRows, Estimate, RunAverages};
+use stripmine_physics::method::{Methods, QuantityKind, observer};
 use stripmine_physics::number::{significant, with_bar};
 
 /// Legend of the ribbons.
@@ -11,21 +11,21 @@ pub(super) const RIBBON: &str = "mean ± 95 %, after the transient";
 pub(super) const BEFORE: &str = "transient, excluded from the mean";
 
 /// Means of a run, as in `average` and `summary.json`.
-pub(super) struct Means {
+pub(super) struct ColumnMeans {
     averages: Vec<Average>,
     /// Times of the first and the last row.
     ends: [f64; 2],
 }
 
-impl Means {
+impl ColumnMeans {
     /// Means of the rows of a table whose first column is the step; none if no method has these columns.
-    pub(super) fn of(columns: &[String], rows: &[Vec<f64>], methods: Methods) -> Option<Means> {
+    pub(super) fn of(columns: &[String], rows: &[Vec<f64>], methods: Methods) -> Option<ColumnMeans> {
         let method = observer(methods, columns)?;
-        let mut all = Rows::new(method.quantities);
+        let mut all = AveragedRows::new(method.quantities);
         rows.iter().for_each(|row| all.add(&row[1..]));
-        let time = 1 + method.quantities.iter().position(|it| it.kind == Kind::Time)?;
+        let time = 1 + method.quantities.iter().position(|it| it.kind == QuantityKind::Time)?;
         let ends = [rows.first()?[time], rows.last()?[time]];
-        Some(Means { averages: Averages::of(&all).quantities, ends })
+        Some(ColumnMeans { averages: RunAverages::of(&all).quantities, ends })
     }
 
     fn of_column(&self, name: &str) -> Option<&Average> {
@@ -36,7 +36,7 @@ impl Means {
     fn drawn(&self, name: &str) -> Option<&Estimate> {
         match self.of_column(name)? {
             Average { of: "rate", .. } => None,
-            Average { outcome: Outcome::Mean(estimate), .. } => Some(estimate),
+            Average { outcome: AverageOutcome::Mean(estimate), .. } => Some(estimate),
             _ => None,
         }
     }
@@ -54,24 +54,24 @@ impl Means {
     }
 
     /// Band over the time before every mean of some columns; none if a mean begins at the start.
-    pub(super) fn before(&self, names: &[&str]) -> Option<Band> {
+    pub(super) fn before(&self, names: &[&str]) -> Option<ChartBand> {
         let cuts = names.iter().filter_map(|name| Some(self.drawn(name)?.equilibrated_at));
         let first = cuts.reduce(f64::min)?;
-        (first > self.ends[0]).then(|| Band::of_x(BEFORE, [self.ends[0], first]))
+        (first > self.ends[0]).then(|| ChartBand::of_x(BEFORE, [self.ends[0], first]))
     }
 
     /// Mean of a column with its error, or one or two words on why there is none.
     pub(super) fn short(&self, name: &str) -> String {
         self.of_column(name).map_or_else(String::new, |average| match &average.outcome {
-            Outcome::Mean(Estimate { mean, bar, .. }) if average.of == "rate" => {
+            AverageOutcome::Mean(Estimate { mean, bar, .. }) if average.of == "rate" => {
                 format!("rate {}", with_bar(*mean, *bar))
             }
-            Outcome::Mean(Estimate { mean, bar, .. }) => with_bar(*mean, *bar),
-            Outcome::Constant { .. } => "constant".to_owned(),
-            Outcome::TooShort { .. } => "too short".to_owned(),
-            Outcome::Changing { .. } => "changing".to_owned(),
-            Outcome::Undefined => "undefined".to_owned(),
-            Outcome::Kept { .. } => String::new(),
+            AverageOutcome::Mean(Estimate { mean, bar, .. }) => with_bar(*mean, *bar),
+            AverageOutcome::Constant { .. } => "constant".to_owned(),
+            AverageOutcome::TooShort { .. } => "too short".to_owned(),
+            AverageOutcome::Changing { .. } => "changing".to_owned(),
+            AverageOutcome::Undefined => "undefined".to_owned(),
+            AverageOutcome::Kept { .. } => String::new(),
         })
     }
 
@@ -82,14 +82,16 @@ impl Means {
         // Non-breaking blanks keep a mean and its error bar on one line.
         let whole = |text: String| text.replace(' ', "\u{a0}");
         Some(match &average.outcome {
-            Outcome::Mean(Estimate { mean, bar, .. }) => format!("{rate}{}", whole(with_bar(*mean, *bar))),
-            Outcome::Constant { mean } => format!("{rate}always {}", significant(*mean, 6)),
-            Outcome::TooShort { enough_at, .. } => {
+            AverageOutcome::Mean(Estimate { mean, bar, .. }) => {
+                format!("{rate}{}", whole(with_bar(*mean, *bar)))
+            }
+            AverageOutcome::Constant { mean } => format!("{rate}always {}", significant(*mean, 6)),
+            AverageOutcome::TooShort { enough_at, .. } => {
                 format!("run too short for a mean, needs time {}", significant(*enough_at, 2))
             }
-            Outcome::Changing { .. } => "still changing, no mean".to_owned(),
-            Outcome::Undefined => "undefined in some rows, no mean".to_owned(),
-            Outcome::Kept { .. } => return None,
+            AverageOutcome::Changing { .. } => "still changing, no mean".to_owned(),
+            AverageOutcome::Undefined => "undefined in some rows, no mean".to_owned(),
+            AverageOutcome::Kept { .. } => return None,
         })
     }
 }

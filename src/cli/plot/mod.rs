@@ -10,19 +10,19 @@ mod window;
 
 use super::display::{UnitSystem, scene_of};
 use super::run_folder;
-use crate::console::{Common, Failure, print, print_json, warn};
+use crate::console::{CommandFailure, Common, print, print_json, warn};
 use crate::report::figure::{Figure, png, svg};
 use crate::report::{html, terminal};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use colouring::{Colouring, Colours};
-use observed::Observed;
+use colouring::{Colouring, RunColouring};
+use observed::ObservableTable;
 use particles::PictureError;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
-use stripmine_physics::io::owned_folder::{FolderKind, Holds, LOCK, OwnedFolder};
+use stripmine_physics::io::owned_folder::{FolderContent, FolderKind, LOCK, OwnedFolder};
 use stripmine_physics::method::Methods;
 use stripmine_physics::quoted;
 
@@ -56,20 +56,20 @@ const FILM: &str = "film.html";
 const PICTURES: FolderKind = FolderKind {
     lock: LOCK,
     list: "plot.files",
-    holds: Holds::Files { heading: "stripmine plot.files 1", is_own: is_picture, is_shared: true },
+    holds: FolderContent::Files { heading: "stripmine plot.files 1", is_own: is_picture, is_shared: true },
 };
 /// Longest name of a picture (characters), without extension and number.
 const LONGEST_NAME: usize = 80;
 
 impl PlotVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         let run = run_folder(&self.run);
-        let table = Observed::read(&run.join("thermo.csv"), methods)?;
+        let table = ObservableTable::read(&run.join("thermo.csv"), methods)?;
         let wanted = table.wanted(&self.columns, methods)?;
         let units = UnitSystem::of(scene_of(&run).as_ref());
         let mut figures = table.figures(&wanted, &units);
         figures.extend(structure::figures(&run, &units)?);
-        let colours = Colours::new(self.color.as_deref(), &run, methods);
+        let colours = RunColouring::new(self.color.as_deref(), &run, methods);
         match particles::pictures(&run, &colours) {
             Ok(pictures) => figures.extend(pictures),
             Err(PictureError::Colouring(error)) => return Err(error.into()),
@@ -115,7 +115,7 @@ fn is_picture(name: &str) -> bool {
 }
 
 /// Draws a picture as SVG and PNG; warns and returns none if it cannot be drawn.
-fn drawn(figure: &Figure, common: &Common) -> Result<Option<(String, Vec<u8>)>, Failure> {
+fn drawn(figure: &Figure, common: &Common) -> Result<Option<(String, Vec<u8>)>, CommandFailure> {
     match svg(figure).and_then(|vector| Ok((vector, png(figure)?))) {
         Ok(pictures) => Ok(Some(pictures)),
         Err(why) => {

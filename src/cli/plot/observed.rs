@@ -1,16 +1,16 @@
 //! Observables of a run: `thermo.csv` as charts, and one line for each in the terminal.
 
-use super::means::Means;
+use super::means::ColumnMeans;
 use crate::cli::display::UnitSystem;
-use crate::frame::{Rows, Table};
-use crate::report::figure::{Axis, Chart, Figure, Series, Style};
+use crate::frame::{FormattedTable, FrameBuilder};
+use crate::report::figure::{Chart, ChartAxis, Figure, Series, Style};
 use crate::statistics::quantile;
 use std::collections::BTreeMap;
 use std::path::Path;
 use stripmine_physics::method::{Methods, observer};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted::{self, quoted};
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::run::{TableError, TableReader};
 use stripmine_physics::words::suggestion;
 
@@ -29,7 +29,7 @@ const DIGITS: usize = 4;
 
 /// Errors of reading observables.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum ObservedError {
+pub(super) enum ObservableError {
     /// No column of that name.
     #[error("unknown column {}; expected one of: {}{}", quoted(name), known.join(", "), suggestion(name, known.iter().map(String::as_str)))]
     NoColumn {
@@ -43,36 +43,36 @@ pub(super) enum ObservedError {
     Table(#[from] TableError),
 }
 
-impl Reported for ObservedError {
-    fn class(&self) -> Class {
+impl Reported for ObservableError {
+    fn class(&self) -> ErrorClass {
         match self {
-            ObservedError::NoColumn { .. } => Class::Usage,
-            ObservedError::Table(error) => error.class(),
+            ObservableError::NoColumn { .. } => ErrorClass::Usage,
+            ObservableError::Table(error) => error.class(),
         }
     }
 
     fn passed_on(&self) -> Option<&dyn Reported> {
         match self {
-            ObservedError::NoColumn { .. } => None,
-            ObservedError::Table(error) => Some(error),
+            ObservableError::NoColumn { .. } => None,
+            ObservableError::Table(error) => Some(error),
         }
     }
 }
 
 /// Contents of `thermo.csv`.
-pub(super) struct Observed {
+pub(super) struct ObservableTable {
     columns: Vec<String>,
     rows: Vec<Vec<f64>>,
     /// Means of the columns; none if no method of this version has them.
-    means: Option<Means>,
+    means: Option<ColumnMeans>,
 }
 
 /// Curves of one chart: each column with its range.
-struct Group {
+struct CurveGroup {
     curves: Vec<(usize, [f64; 2])>,
 }
 
-impl Group {
+impl CurveGroup {
     /// Returns true if one more curve fits, and every curve keeps a visible range.
     fn has_room_for(&self, ends: [f64; 2]) -> bool {
         let all = || self.curves.iter().map(|(_, ends)| *ends).chain([ends]);
@@ -87,13 +87,13 @@ impl Group {
 }
 
 /// Requested column with its unit.
-pub(super) struct Wanted {
+pub(super) struct SelectedColumn {
     column: usize,
     unit: &'static str,
 }
 
-impl Observed {
-    pub(super) fn read(path: &Path, methods: Methods) -> Result<Observed, ObservedError> {
+impl ObservableTable {
+    pub(super) fn read(path: &Path, methods: Methods) -> Result<ObservableTable, ObservableError> {
         let mut table = TableReader::open(path)?;
         let mut rows = vec![];
         while let Some(row) = table.next_row()? {
@@ -103,8 +103,8 @@ impl Observed {
             return Err(table.without_rows().into());
         }
         let columns = table.columns().to_vec();
-        let means = Means::of(&columns, &rows, methods);
-        Ok(Observed { columns, rows, means })
+        let means = ColumnMeans::of(&columns, &rows, methods);
+        Ok(ObservableTable { columns, rows, means })
     }
 
     fn column(&self, column: usize) -> impl Iterator<Item = f64> {
@@ -115,12 +115,16 @@ impl Observed {
         self.columns.iter().position(|column| column == "time").unwrap_or_default()
     }
 
-    pub(super) fn wanted(&self, names: &[String], methods: Methods) -> Result<Vec<Wanted>, ObservedError> {
+    pub(super) fn wanted(
+        &self,
+        names: &[String],
+        methods: Methods,
+    ) -> Result<Vec<SelectedColumn>, ObservableError> {
         let quantities = observer(methods, &self.columns).map_or(&[][..], |method| method.quantities);
         let of = |column: usize| {
             let name = &self.columns[column];
             let unit = quantities.iter().find(|quantity| quantity.name == name).map_or("", |it| it.unit);
-            Wanted { column, unit }
+            SelectedColumn { column, unit }
         };
         if names.is_empty() {
             let changes = |column: &usize| {
@@ -133,7 +137,7 @@ impl Observed {
         }
         let find = |name: &String| match self.columns.iter().position(|column| column == name) {
             Some(column) => Ok(of(column)),
-            None => Err(ObservedError::NoColumn {
+            None => Err(ObservableError::NoColumn {
                 name: name.clone(),
                 known: self.columns.iter().map(|column| quoted(column)).collect(),
             }),
@@ -142,17 +146,17 @@ impl Observed {
     }
 
     /// Charts of a few curves each, all of one unit and of similar range.
-    pub(super) fn figures(&self, wanted: &[Wanted], system: &UnitSystem) -> Vec<Figure> {
-        let mut units: BTreeMap<&str, Vec<Group>> = BTreeMap::new();
+    pub(super) fn figures(&self, wanted: &[SelectedColumn], system: &UnitSystem) -> Vec<Figure> {
+        let mut units: BTreeMap<&str, Vec<CurveGroup>> = BTreeMap::new();
         for it in wanted {
             let ends = self.ends(it.column);
             let groups = units.entry(it.unit).or_default();
             match groups.iter_mut().find(|group| group.has_room_for(ends)) {
                 Some(group) => group.curves.push((it.column, ends)),
-                None => groups.push(Group { curves: vec![(it.column, ends)] }),
+                None => groups.push(CurveGroup { curves: vec![(it.column, ends)] }),
             }
         }
-        let of = |(unit, groups): (&str, Vec<Group>)| -> Vec<Figure> {
+        let of = |(unit, groups): (&str, Vec<CurveGroup>)| -> Vec<Figure> {
             let unit = system.symbol(unit);
             groups.iter().map(|group| self.figure(&unit, &group.columns(), system)).collect()
         };
@@ -186,8 +190,8 @@ impl Observed {
         let label = if let [name] = words.as_slice() { name } else { "value" };
         let [_, of_time] = system.at_axes();
         let chart = Chart::of(
-            Axis::linear("time", Some(of_time.as_str())),
-            Axis::linear(label, (!unit.is_empty()).then_some(unit)),
+            ChartAxis::linear("time", Some(of_time.as_str())),
+            ChartAxis::linear(label, (!unit.is_empty()).then_some(unit)),
         )
         .with(series);
         let columns: Vec<&str> = columns.iter().map(|&column| self.columns[column].as_str()).collect();
@@ -208,9 +212,9 @@ impl Observed {
     }
 
     /// Table with a row for each column: first, last, mean and curve.
-    pub(super) fn small(&self, wanted: &[Wanted], out: &Path) -> Table {
+    pub(super) fn small(&self, wanted: &[SelectedColumn], out: &Path) -> FormattedTable {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
-        Rows::of(wanted)
+        FrameBuilder::of(wanted)
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
@@ -240,7 +244,7 @@ fn course(values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Cell;
+    use crate::report::TableCell;
 
     #[test]
     fn sparklines_span_smallest_to_largest() {
@@ -253,14 +257,16 @@ mod tests {
     fn curves_of_a_chart_have_similar_ranges() {
         let columns = ["time", "kinetic", "temperature", "elastic", "px", "py", "far"].map(str::to_owned);
         let row = |t: f64| vec![t, 680.0 * t, 0.7 * t, 200.0 * t, 1e-15 * t, 2e-15 * t, 1e9 + 300.0 * t];
-        let observed = Observed { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)], means: None };
-        let wanted: Vec<Wanted> = (1..7).map(|column| Wanted { column, unit: "energy" }).collect();
+        let observed =
+            ObservableTable { columns: columns.to_vec(), rows: vec![row(0.0), row(1.0)], means: None };
+        let wanted: Vec<SelectedColumn> =
+            (1..7).map(|column| SelectedColumn { column, unit: "energy" }).collect();
         let system = UnitSystem::Other("reduced".to_owned());
         let figures = observed.figures(&wanted, &system);
         let names: Vec<String> = figures.into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
         // Small numbers keep their significant digits in the terminal.
         let small = observed.small(&wanted, Path::new("out"));
-        assert_eq!(small.rows[3][2], Cell::Text("1e-15".to_owned()));
+        assert_eq!(small.rows[3][2], TableCell::Text("1e-15".to_owned()));
     }
 }

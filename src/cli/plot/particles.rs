@@ -1,11 +1,11 @@
 //! Pictures of the particles of a run: its last state and, in a long box, the density along it over time.
 
-use super::colouring::{ColouringError, Colours};
+use super::colouring::{ColouringError, RunColouring};
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
-use crate::report::figure::{Axis, Drawing, Figure, Guide, Map, Picture, Shape, Tint};
+use crate::report::figure::{ChartAxis, Drawing, DrawnShape, Figure, Guide, HeatMap, Picture, Tint};
 use std::path::Path;
-use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::extxyz::ParticleFrame;
 use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
 use stripmine_physics::number::significant;
 
@@ -57,10 +57,10 @@ pub(super) enum PictureError {
 ///
 /// # Errors
 /// If the trajectory cannot be read, or its particles cannot be coloured this way.
-pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, PictureError> {
+pub(super) fn pictures(run: &Path, colours: &RunColouring) -> Result<Vec<Figure>, PictureError> {
     let (mut last, mut slices, mut tracks) = (None, vec![], vec![]);
     for frame in Trajectory::open(run)? {
-        let frame: Frame = frame?;
+        let frame: ParticleFrame = frame?;
         slices.extend(slice(&frame).map(|counts| (frame.time, counts)));
         if frame.particles.len() <= TRACED && window::is_endless(&frame) {
             tracks.push(frame.particles.all().iter().map(|particle| particle.position).collect::<Vec<_>>());
@@ -72,7 +72,8 @@ pub(super) fn pictures(run: &Path, colours: &Colours) -> Result<Vec<Figure>, Pic
     let every = (tracks.len() * last.particles.len()).div_ceil(TRACES).max(1);
     let traces = tracks.into_iter().step_by(every).flatten().collect::<Vec<_>>();
     let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
-    let views: &[View] = if has_depth { &[View::AlongZ, View::AlongY] } else { &[View::Plane] };
+    let views: &[ViewDirection] =
+        if has_depth { &[ViewDirection::AlongZ, ViewDirection::AlongY] } else { &[ViewDirection::Plane] };
     let values = colours.values(&last)?;
     let ends = colours.ends(values.clone())?;
     let tells_apart = !colours.is_chosen && !traces.is_empty() && last.particles.len() <= TOLD_APART;
@@ -98,7 +99,7 @@ struct Shades {
 
 /// Direction of view.
 #[derive(Clone, Copy, PartialEq)]
-enum View {
+enum ViewDirection {
     /// Particles in a plane.
     Plane,
     /// Bodies in space, from above.
@@ -107,10 +108,10 @@ enum View {
     AlongY,
 }
 
-impl View {
+impl ViewDirection {
     /// Axes drawn to the right and upwards.
     fn axes(self) -> [usize; 2] {
-        if self == View::AlongY { [0, 2] } else { [0, 1] }
+        if self == ViewDirection::AlongY { [0, 2] } else { [0, 1] }
     }
 }
 
@@ -123,11 +124,11 @@ fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
 /// Picture of the particles of a frame.
 fn state(
     name: &str,
-    frame: &Frame,
+    frame: &ParticleFrame,
     scene: Option<&toml::Table>,
     traces: &[[f64; 3]],
     shades: &Shades,
-    view: View,
+    view: ViewDirection,
 ) -> Figure {
     let all = frame.particles.all();
     let Shades { values, ends: [low, high], quantity, label, tells_apart } = shades;
@@ -149,7 +150,7 @@ fn state(
     // Shapes outside the window would cover the labels around it.
     let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
     let level = bounds[1].into_iter().filter(|at| up.contains(at)).map(|at| [[x, at], [x_end, at]]);
-    let walls = upright.chain(level).map(|ends| Shape::Line { ends: ends.map(place) });
+    let walls = upright.chain(level).map(|ends| DrawnShape::Line { ends: ends.map(place) });
     let is_inside = |position: [f64; 3]| {
         let [a, b] = flat(position);
         across.contains(&a) && up.contains(&b)
@@ -158,17 +159,17 @@ fn state(
     let earlier = seen.map(|(at, &trace)| {
         let hue = if *tells_apart { at % all.len() } else { 0 };
         let radius = TRACE * THICKNESS[hue % THICKNESS.len()] * pixel;
-        Shape::Disc { centre: place(flat(trace)), radius, tint: Tint::Hue(hue) }
+        DrawnShape::Disc { centre: place(flat(trace)), radius, tint: Tint::Hue(hue) }
     });
     // Grains come before walls; only grains have values.
     let seen = || all.iter().enumerate().step_by(every).filter(|(_, particle)| is_inside(particle.position));
     let shade = |value: &f64| Tint::Shade(((value - low) / (high - low)).clamp(0.0, 1.0));
-    let shapes = seen().map(|(at, particle)| Shape::Disc {
+    let shapes = seen().map(|(at, particle)| DrawnShape::Disc {
         centre: place(flat(particle.position)),
         radius: radius(particle.radius),
         tint: if *tells_apart { Tint::Hue(at) } else { values.get(at).map_or(Tint::Still, shade) },
     });
-    let numbers = seen().filter(|_| *tells_apart).map(|(_, particle)| Shape::Text {
+    let numbers = seen().filter(|_| *tells_apart).map(|(_, particle)| DrawnShape::Text {
         centre: place(flat(particle.position)),
         height: LARGE_POINT * pixel,
         words: particle.id.to_string(),
@@ -184,9 +185,9 @@ fn state(
         false => format!("{name}: particles by {quantity} at {time}"),
     };
     match view {
-        View::Plane => {}
-        View::AlongZ => title.push_str(", seen along z: x to the right, y upwards"),
-        View::AlongY => title.push_str(", seen along y: x to the right, z upwards"),
+        ViewDirection::Plane => {}
+        ViewDirection::AlongZ => title.push_str(", seen along z: x to the right, y upwards"),
+        ViewDirection::AlongY => title.push_str(", seen along y: x to the right, z upwards"),
     }
     if all.is_empty() {
         title.push_str("; there are none");
@@ -216,16 +217,16 @@ fn state(
             unit: of_length.to_owned(),
             gravity: scene
                 .and_then(gravity)
-                .filter(|_| view == View::Plane)
+                .filter(|_| view == ViewDirection::Plane)
                 .map(|[a, b]| if lies { [-b, a] } else { [a, b] }),
         }),
     })
-    .figure(if view == View::AlongY { "last-state-side" } else { "last-state" }, title)
+    .figure(if view == ViewDirection::AlongY { "last-state-side" } else { "last-state" }, title)
     .caption(if *tells_apart { traced.trim().to_owned() } else { format!("Shade: {label}.{traced}") })
 }
 
 /// Numbers of grains in slices along a long box, from its lower or left end; none if no side is much longer than the other.
-fn slice(frame: &Frame) -> Option<Vec<f64>> {
+fn slice(frame: &ParticleFrame) -> Option<Vec<f64>> {
     let [width, height] = frame.cell;
     let side = if width > LONG * height { 0 } else { 1 };
     if frame.cell[side] <= LONG * frame.cell[1 - side] {
@@ -245,7 +246,7 @@ fn slice(frame: &Frame) -> Option<Vec<f64>> {
 /// Map of the density along a long box over time.
 fn density(
     name: &str,
-    last: &Frame,
+    last: &ParticleFrame,
     scene: Option<&toml::Table>,
     slices: &[(f64, Vec<f64>)],
 ) -> Option<Figure> {
@@ -261,12 +262,12 @@ fn density(
     let [width, height] = last.cell;
     let (side, way) = if width > height { (0, "x") } else { (1, "y") };
     let [of_length, of_time] = UnitSystem::of(scene).at_axes();
-    let axis = |label: &str, unit: &str, ends| Axis::linear(label, Some(unit)).between(ends);
+    let axis = |label: &str, unit: &str, ends| ChartAxis::linear(label, Some(unit)).between(ends);
     Some(
-        Picture::Map(Map {
+        Picture::Map(HeatMap {
             x: axis(way, &of_length, [last.origin[side], last.origin[side] + last.cell[side]]),
             y: axis("time", &of_time, [*begun, *ended]),
-            value: Axis::linear("density, relative to the mean", None),
+            value: ChartAxis::linear("density, relative to the mean", None),
             rows: rows.collect(),
         })
         .figure("density-map", format!("{name}: density along the box over time"))

@@ -2,10 +2,10 @@
 
 use crate::cli::display::UnitSystem;
 use crate::console::warn;
-use crate::report::figure::{Axis, Chart, Figure, Map, Picture, Series, Style};
+use crate::report::figure::{Chart, ChartAxis, Figure, HeatMap, Picture, Series, Style};
 use std::path::Path;
-use stripmine_physics::run::{FinishedError, Function, Point, functions_of};
-use stripmine_physics::structure::{Observable, Over, Seen};
+use stripmine_physics::run::{FinishedError, FunctionPoint, StructureFunction, functions_of};
+use stripmine_physics::structure::{FunctionArguments, SamplingKind, StructureObservable};
 
 /// Draws a figure of each structure file with rows, and warns about the others.
 ///
@@ -13,18 +13,20 @@ use stripmine_physics::structure::{Observable, Over, Seen};
 /// As [`functions_of`].
 pub(super) fn figures(run: &Path, units: &UnitSystem) -> Result<Vec<Figure>, FinishedError> {
     let functions = functions_of(std::iter::once(run))?;
-    for Function { name, doubt, .. } in functions.iter().filter(|function| function.points.is_empty()) {
+    for StructureFunction { name, doubt, .. } in
+        functions.iter().filter(|function| function.points.is_empty())
+    {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
     let functions = functions.iter().filter(|function| !function.points.is_empty());
     Ok(functions.filter_map(|function| figure(function, units)).collect())
 }
 
-fn axis([label, unit]: [&str; 2], units: &UnitSystem) -> Axis {
-    Axis::linear(label, (!unit.is_empty()).then_some(units.symbol(unit).as_str()))
+fn axis([label, unit]: [&str; 2], units: &UnitSystem) -> ChartAxis {
+    ChartAxis::linear(label, (!unit.is_empty()).then_some(units.symbol(unit).as_str()))
 }
 
-fn figure(function: &Function, units: &UnitSystem) -> Option<Figure> {
+fn figure(function: &StructureFunction, units: &UnitSystem) -> Option<Figure> {
     let observable = function.observable;
     let axis = |of: [&str; 2]| axis(of, units);
     let name = observable.file.trim_end_matches(".csv").to_owned();
@@ -38,7 +40,8 @@ fn figure(function: &Function, units: &UnitSystem) -> Option<Figure> {
         _ if is_of_waves(observable) => {
             let along = [0, 1].map(|axis| {
                 // The other component is 0.
-                let number = move |point: &Point| Some(point.over[axis]).filter(|number| *number > 0.0);
+                let number =
+                    move |point: &FunctionPoint| Some(point.over[axis]).filter(|number| *number > 0.0);
                 series(function, ["along x", "along y"][axis], axis, number)
             });
             Chart::of(axis(["k", "1/length"]), axis(observable.value))
@@ -58,13 +61,18 @@ fn figure(function: &Function, units: &UnitSystem) -> Option<Figure> {
 }
 
 /// Returns true for functions of wave vectors.
-fn is_of_waves(observable: &Observable) -> bool {
-    matches!(observable.seen, Seen::Once { over: Over::Waves, .. })
+fn is_of_waves(observable: &StructureObservable) -> bool {
+    matches!(observable.seen, SamplingKind::Once { over: FunctionArguments::Waves, .. })
 }
 
 /// Points of a function that have a coordinate, with their error bars if known.
-fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Option<f64>) -> Series {
-    let point = |point: &Point| {
+fn series(
+    function: &StructureFunction,
+    name: &str,
+    hue: usize,
+    of: impl Fn(&FunctionPoint) -> Option<f64>,
+) -> Series {
+    let point = |point: &FunctionPoint| {
         let bar = if point.bar.is_nan() { 0.0 } else { point.bar };
         Some((of(point)?, point.mean, [point.mean - bar, point.mean + bar]))
     };
@@ -72,7 +80,7 @@ fn series(function: &Function, name: &str, hue: usize, of: impl Fn(&Point) -> Op
 }
 
 /// Map of a function of position, stored row by row on a grid; none if cells are missing.
-fn map(function: &Function, [x, y, value]: [Axis; 3]) -> Option<Picture> {
+fn map(function: &StructureFunction, [x, y, value]: [ChartAxis; 3]) -> Option<Picture> {
     let points = &function.points;
     let first = points.first()?;
     let columns = points.iter().take_while(|point| point.over[1] == first.over[1]).count();
@@ -84,7 +92,7 @@ fn map(function: &Function, [x, y, value]: [Axis; 3]) -> Option<Picture> {
         let half = 0.5 * (second - first);
         [first - half, last + half]
     };
-    Some(Picture::Map(Map {
+    Some(Picture::Map(HeatMap {
         x: x.between(ends(0, 1)),
         y: y.between(ends(1, columns)),
         value,

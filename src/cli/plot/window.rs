@@ -1,7 +1,7 @@
 //! Window of a picture of particles: the part of a box, or of space, that contains almost all of them.
 
 use crate::statistics::quantile;
-use stripmine_physics::io::extxyz::Frame;
+use stripmine_physics::io::extxyz::ParticleFrame;
 
 /// Fractions of many particles that may lie outside each end of the window, in a box and in space.
 const BEYOND: [f64; 2] = [0.01, 0.025];
@@ -16,17 +16,17 @@ const FLATTEST: f64 = 0.25;
 const RADII: f64 = 20.0;
 
 /// Returns true if a frame has no box.
-pub(super) fn is_endless(frame: &Frame) -> bool {
+pub(super) fn is_endless(frame: &ParticleFrame) -> bool {
     frame.cell.iter().any(|side| side.is_infinite())
 }
 
 /// Returns true if a frame's box is periodic along an axis.
-pub(super) fn is_periodic(frame: &Frame, axis: usize) -> bool {
+pub(super) fn is_periodic(frame: &ParticleFrame, axis: usize) -> bool {
     !is_endless(frame) && frame.periodic.is_none_or(|periodic| periodic[axis])
 }
 
 /// Returns true if the particles of a frame with these bounds are bodies, which have no size.
-pub(super) fn is_of_points(frame: &Frame, bounds: [[f64; 2]; 2]) -> bool {
+pub(super) fn is_of_points(frame: &ParticleFrame, bounds: [[f64; 2]; 2]) -> bool {
     is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite())
 }
 
@@ -40,7 +40,7 @@ pub(super) fn pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
 /// Ends of the box along two axes (length); infinite without a box, or where particles of the frame or of `traces` are
 /// outside it. The width of a box that is open above is in the scene, not in the frame.
 pub(super) fn bounds(
-    frame: &Frame,
+    frame: &ParticleFrame,
     scene: Option<&toml::Table>,
     traces: &[[f64; 3]],
     axes: [usize; 2],
@@ -63,7 +63,7 @@ pub(super) fn bounds(
 
 /// Window along two axes (length): the whole box, or the part of it, or of space, with almost all particles.
 pub(super) fn shown(
-    frame: &Frame,
+    frame: &ParticleFrame,
     traces: &[[f64; 3]],
     axes: [usize; 2],
     bounds: [[f64; 2]; 2],
@@ -110,12 +110,12 @@ pub(super) fn shown(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_physics::particles::{Kind, Particle, Particles};
+    use stripmine_physics::particles::{Particle, ParticleKind, Particles};
 
-    fn frame(places: &[[f64; 3]], cell: [f64; 2]) -> Frame {
+    fn frame(places: &[[f64; 3]], cell: [f64; 2]) -> ParticleFrame {
         let particle = |(position, id): (&[f64; 3], u32)| Particle {
             id,
-            kind: Kind::Grain,
+            kind: ParticleKind::Grain,
             position: *position,
             velocity: [0.0; 3],
             angle: 0.0,
@@ -124,7 +124,7 @@ mod tests {
             mass: 1.0,
         };
         let particles = Particles::new(places.iter().zip(1..).map(particle).collect());
-        Frame {
+        ParticleFrame {
             particles,
             cell,
             origin: [0.0; 2],
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn boxes_with_discs_above_are_open() {
         let mut frame = frame(&[[5.0, 5.0, 0.0], [5.0, 12.0, 0.0]], [10.0, 10.0]);
-        let box_of = |frame: &Frame, traces: &[[f64; 3]]| bounds(frame, None, traces, [0, 1]);
+        let box_of = |frame: &ParticleFrame, traces: &[[f64; 3]]| bounds(frame, None, traces, [0, 1]);
         assert_eq!(box_of(&frame, &[]), [[0.0, 10.0], [0.0, 10.0]]);
         frame.periodic = Some([true, false]);
         assert_eq!(box_of(&frame, &[[15.0, 5.0, 0.0]]), [[0.0, 10.0], [0.0, f64::INFINITY]]);

@@ -3,13 +3,13 @@
 //! Every process takes part once: before its first message of joint work, otherwise at its end. So no process waits for one that has ended.
 
 use super::{broken, of_rank};
-use crate::console::Failure;
+use crate::console::CommandFailure;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::ranks::{RankError, Ranks};
 
 /// State of a process before its first message.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) enum Part {
+pub(super) enum ProcessState {
     /// Begins the work that this text describes (scene and program).
     Begins(String),
     /// Has ended successfully without the others.
@@ -18,23 +18,23 @@ pub(super) enum Part {
     Refused { code: u8, words: String },
 }
 
-impl Part {
-    pub(super) fn refused(failure: &Failure) -> Part {
-        Part::Refused { code: failure.exit_code(), words: failure.words() }
+impl ProcessState {
+    pub(super) fn refused(failure: &CommandFailure) -> ProcessState {
+        ProcessState::Refused { code: failure.exit_code(), words: failure.words() }
     }
 }
 
 /// Verdict on all processes, the same on each.
-pub(super) enum Verdict {
+pub(super) enum JointVerdict {
     /// All begin the same work, have ended successfully, or fail for the same reason; or the first rank failed in work of its own.
     Own,
     /// Failure with which all end.
-    Failed(Failure),
+    Failed(CommandFailure),
 }
 
 /// Verdict as broadcast by the first rank.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum Announced {
+enum BroadcastVerdict {
     /// All processes are in the same state.
     Alike,
     /// A rank fails. `alone` is true if the others have ended successfully.
@@ -47,14 +47,16 @@ enum Announced {
 ///
 /// # Errors
 /// [`RankError`] if a rank is lost.
-pub(super) fn agreed(ranks: &dyn Ranks, part: Part) -> Result<Verdict, RankError> {
+pub(super) fn agreed(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdict, RankError> {
     let all = ranks.gather_messages(part)?;
     let announced = ranks.tell_message((ranks.rank() == 0).then(|| verdict(&all)))?;
     Ok(match announced {
-        Announced::Alike => Verdict::Own,
-        Announced::Failed { rank, alone: true, .. } if ranks.rank() == rank => Verdict::Own,
-        Announced::Failed { rank, code, words, .. } => Verdict::Failed(of_rank(rank, code, &words)),
-        Announced::Differs(rank) => Verdict::Failed(broken(
+        BroadcastVerdict::Alike => JointVerdict::Own,
+        BroadcastVerdict::Failed { rank, alone: true, .. } if ranks.rank() == rank => JointVerdict::Own,
+        BroadcastVerdict::Failed { rank, code, words, .. } => {
+            JointVerdict::Failed(of_rank(rank, code, &words))
+        }
+        BroadcastVerdict::Differs(rank) => JointVerdict::Failed(broken(
             format!(
                 "rank {rank} differs from rank 0 in its scene, its arguments or its version of the program"
             ),
@@ -64,18 +66,18 @@ pub(super) fn agreed(ranks: &dyn Ranks, part: Part) -> Result<Verdict, RankError
 }
 
 /// Finds the first rank that fails, unless all fail for the same reason; otherwise the first that differs.
-fn verdict(all: &[Part]) -> Announced {
-    let Some(differs) = all.iter().position(|part| *part != all[0]) else { return Announced::Alike };
+fn verdict(all: &[ProcessState]) -> BroadcastVerdict {
+    let Some(differs) = all.iter().position(|part| *part != all[0]) else { return BroadcastVerdict::Alike };
     let refused = all.iter().enumerate().find_map(|(rank, part)| match part {
-        Part::Refused { code, words } => Some((rank, *code, words.clone())),
-        Part::Begins(_) | Part::Finished => None,
+        ProcessState::Refused { code, words } => Some((rank, *code, words.clone())),
+        ProcessState::Begins(_) | ProcessState::Finished => None,
     });
     match refused {
         Some((rank, code, words)) => {
-            let alone = rank == 0 && all[1..].iter().all(|part| *part == Part::Finished);
-            Announced::Failed { rank, alone, code, words }
+            let alone = rank == 0 && all[1..].iter().all(|part| *part == ProcessState::Finished);
+            BroadcastVerdict::Failed { rank, alone, code, words }
         }
-        None => Announced::Differs(differs),
+        None => BroadcastVerdict::Differs(differs),
     }
 }
 
@@ -88,16 +90,16 @@ mod tests {
 
     /// Exit code and message of each rank for the given states; none where they agree.
     fn outcomes(parts: &[&str]) -> Vec<Option<(u8, String)>> {
-        let one = |ranks: local::Local, part: &str| {
-            let failure = Failure::writing(part.to_owned())(ErrorKind::NotFound.into());
+        let one = |ranks: local::ThreadRank, part: &str| {
+            let failure = CommandFailure::writing(part.to_owned())(ErrorKind::NotFound.into());
             let part = match part.split_once(' ') {
-                Some(("begins", same)) => Part::Begins(same.to_owned()),
-                Some(_) => Part::refused(&failure),
-                None => Part::Finished,
+                Some(("begins", same)) => ProcessState::Begins(same.to_owned()),
+                Some(_) => ProcessState::refused(&failure),
+                None => ProcessState::Finished,
             };
             match agreed(&ranks, part).unwrap() {
-                Verdict::Own => None,
-                Verdict::Failed(failure) => Some((failure.exit_code(), failure.to_string())),
+                JointVerdict::Own => None,
+                JointVerdict::Failed(failure) => Some((failure.exit_code(), failure.to_string())),
             }
         };
         thread::scope(|scope| {

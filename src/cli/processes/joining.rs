@@ -5,10 +5,10 @@ use std::thread;
 use std::time::Duration;
 
 /// Action taken after a waiting time.
-pub(super) type Act = Box<dyn FnOnce() + Send>;
+pub(super) type TimedAction = Box<dyn FnOnce() + Send>;
 
 /// Runs `work`; while it runs, each action of `acts` is taken after its time, one after the other.
-pub(super) fn watched<T>(work: impl FnOnce() -> T, acts: Vec<(Duration, Act)>) -> T {
+pub(super) fn watched<T>(work: impl FnOnce() -> T, acts: Vec<(Duration, TimedAction)>) -> T {
     let (working, ended) = channel::<()>();
     let watch = move || {
         for (time, act) in acts {
@@ -33,7 +33,7 @@ mod tests {
     const MOMENT: Duration = Duration::from_millis(1);
     const FOR_EVER: Duration = Duration::from_secs(1 << 30);
 
-    fn says(what: &'static str, to: &Sender<&'static str>) -> Act {
+    fn says(what: &'static str, to: &Sender<&'static str>) -> TimedAction {
         let to = to.clone();
         Box::new(move || to.send(what).unwrap())
     }

@@ -5,21 +5,24 @@ mod seeds;
 use super::display::UnitSystem;
 use super::processes;
 use crate::console::{
-    Common, Failure, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say, warn,
+    CommandFailure, Common, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say,
+    warn,
 };
 use crate::provenance::built;
-use crate::study::Case;
-use crate::study::explain::{Kept, tuned};
+use crate::study::StudyCase;
+use crate::study::explain::{PlanCache, tuned};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stripmine_physics::method::{Clock, Entry, Methods, Prepared, Purpose, StepLimit, prepare, vocabularies};
+use stripmine_physics::method::{
+    Clock, MethodEntry, Methods, Prepared, StartPurpose, StepLimit, prepare, vocabularies,
+};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
-use stripmine_physics::ranks::{self, Crew};
+use stripmine_physics::ranks::{self, RankBackend};
 use stripmine_physics::run::{
-    Ending, Existing, Job, Summary, Summed, begins, chosen_otherwise, forecast, run,
+    Ending, ExistingRun, RunJob, StructureSummary, Summary, begins, chosen_otherwise, forecast, run,
 };
-use stripmine_physics::scene::Values;
+use stripmine_physics::scene::SceneValues;
 use stripmine_physics::signals;
 
 /// Limit of `--ranks`, above the cores of any machine at hand.
@@ -61,7 +64,7 @@ pub(super) struct RunVerb {
 }
 
 impl RunVerb {
-    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         if let Some(count) = self.seeds {
             return self.run_seeds(count, common, methods);
         }
@@ -70,37 +73,37 @@ impl RunVerb {
         // A resumed run keeps its choices.
         let is_open = self.tuned && begins(&folder, self.existing())?;
         let given = if is_open { self.tuned(common, methods)? } else { self.overrides.clone() };
-        let text = Values::text(&self.scene, &vocabularies)?;
-        let values = Values::parse(&self.scene, &text, &given, &vocabularies)?;
+        let text = SceneValues::text(&self.scene, &vocabularies)?;
+        let values = SceneValues::parse(&self.scene, &text, &given, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
         if self.resume {
             let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene, &folder);
             if !chosen.is_empty() {
                 let overrides = [given.as_slice(), &chosen].concat();
-                let values = Values::parse(&self.scene, &text, &overrides, &vocabularies)?;
+                let values = SceneValues::parse(&self.scene, &text, &overrides, &vocabularies)?;
                 (prepared, _) = prepare(values, methods)?;
             }
         }
         let crew = self.crew(common)?;
         prepared.memory = prepared.memory.on(crew);
         prepared.memory.fits(&self.scene)?;
-        let Crew::Processes(join) = crew else {
+        let RankBackend::Processes(join) = crew else {
             return self.carry_out((&prepared, entry), &folder, crew, common);
         };
         let first = || self.carry_out((&prepared, entry), &folder, crew, common);
         processes::together(join, &format!("run\n{:?}\n{}", built(), prepared.scene), first, || {
-            processes::serve(crew, || prepared.start(Purpose::Run).map(drop));
+            processes::serve(crew, || prepared.start(StartPurpose::Run).map(drop));
         })
     }
 
     /// Crew that executes the run.
-    fn crew(&self, common: &Common) -> Result<Crew, Failure> {
+    fn crew(&self, common: &Common) -> Result<RankBackend, CommandFailure> {
         match (common.crew, self.ranks) {
-            (Crew::Processes(_), 2..) => Err(processes::ranks_twice()),
-            (crew @ Crew::Processes(_), _) => Ok(crew),
+            (RankBackend::Processes(_), 2..) => Err(processes::ranks_twice()),
+            (crew @ RankBackend::Processes(_), _) => Ok(crew),
             (_, ranks) => {
                 threads_of_ranks(ranks, rayon::current_num_threads())?;
-                Ok(Crew::Threads(ranks.into()))
+                Ok(RankBackend::Threads(ranks.into()))
             }
         }
     }
@@ -108,11 +111,11 @@ impl RunVerb {
     /// Executes the run and prints its summary.
     fn carry_out(
         &self,
-        (prepared, entry): (&Prepared, &'static Entry),
+        (prepared, entry): (&Prepared, &'static MethodEntry),
         folder: &Path,
-        crew: Crew,
+        crew: RankBackend,
         common: &Common,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CommandFailure> {
         let existing = self.existing();
         let begins = begins(folder, existing)?;
         if !common.quiet {
@@ -128,7 +131,7 @@ impl RunVerb {
                 warn(note);
             }
         };
-        let job = Job { prepared, quantities: entry.quantities, program: &built() };
+        let job = RunJob { prepared, quantities: entry.quantities, program: &built() };
         let work = || run(job, folder, existing, signals::asked(), progress, notice);
         let ending = ranks::over(crew, work);
         clear_progress();
@@ -141,7 +144,7 @@ impl RunVerb {
                 print(&text(&summary, folder, &prepared.scene))
             }
             Ending::Interrupted { clock } => {
-                Err(Failure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
+                Err(CommandFailure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
             }
         }
     }
@@ -151,18 +154,18 @@ impl RunVerb {
 ///
 /// # Errors
 /// [`Failure::ManyThreads`]
-pub(super) fn threads_of_ranks(ranks: u16, threads: usize) -> Result<(), Failure> {
+pub(super) fn threads_of_ranks(ranks: u16, threads: usize) -> Result<(), CommandFailure> {
     match usize::from(ranks) * threads > MOST_THREADS.into() {
-        true if ranks > 1 => Err(Failure::ManyThreads { ranks, threads }),
+        true if ranks > 1 => Err(CommandFailure::ManyThreads { ranks, threads }),
         _ => Ok(()),
     }
 }
 
 impl RunVerb {
     /// Overrides, with the values that cached measurements choose for `auto`.
-    fn tuned(&self, common: &Common, methods: Methods) -> Result<Vec<String>, Failure> {
-        let case = Case::load(&self.scene, &self.overrides, methods)?;
-        let found = tuned(&case, &Kept::here());
+    fn tuned(&self, common: &Common, methods: Methods) -> Result<Vec<String>, CommandFailure> {
+        let case = StudyCase::load(&self.scene, &self.overrides, methods)?;
+        let found = tuned(&case, &PlanCache::here());
         if !common.quiet {
             match &found {
                 Err(error) => warn(format_args!("--tuned changes nothing: {error}")),
@@ -190,11 +193,11 @@ impl RunVerb {
     }
 
     /// Treatment of an existing run in the folder.
-    fn existing(&self) -> Existing {
+    fn existing(&self) -> ExistingRun {
         match (self.resume, self.overwrite) {
-            (true, _) => Existing::Resume { other_version: self.other_version },
-            (_, true) => Existing::Overwrite,
-            _ => Existing::Refuse,
+            (true, _) => ExistingRun::Resume { other_version: self.other_version },
+            (_, true) => ExistingRun::Overwrite,
+            _ => ExistingRun::Refuse,
         }
     }
 }
@@ -232,7 +235,7 @@ fn text(summary: &Summary, folder: &Path, scene: &str) -> String {
         summary.in_words
     );
     text.push_str(&units.averages(&summary.averages).to_string());
-    for Summed { name, doubt, .. } in &summary.structure {
+    for StructureSummary { name, doubt, .. } in &summary.structure {
         doubt.iter().for_each(|doubt| text.push_str(&format!("{name}: {doubt}\n")));
     }
     for choice in &summary.choices {

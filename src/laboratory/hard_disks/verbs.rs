@@ -1,8 +1,8 @@
 //! Studies of hard discs as verbs below `chart`.
 
-use super::study::soft_hard::{Question, soft_hard};
+use super::study::soft_hard::{SoftHardComparison, soft_hard};
 use crate::console::Verb;
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress};
 use crate::laboratory::written;
 use crate::results::Folder;
 use clap::{Args, FromArgMatches};
@@ -13,7 +13,9 @@ use std::time::Instant;
 pub(super) const CHARTS: &[Verb] = &[Verb {
     name: "soft-hard",
     command: |command| SoftHardVerb::augment_args(command),
-    run: |matches, common| SoftHardVerb::from_arg_matches(matches).map_err(Failure::Arguments)?.run(common),
+    run: |matches, common| {
+        SoftHardVerb::from_arg_matches(matches).map_err(CommandFailure::Arguments)?.run(common)
+    },
 }];
 
 /// Compares one granular scene with soft discs of increasing stiffness and with hard discs: pressure, cooling, cost
@@ -43,14 +45,14 @@ fn between<const LOW: u32, const HIGH: u32>(text: &str) -> Result<f64, String> {
 }
 
 impl SoftHardVerb {
-    fn run(&self, common: &Common) -> Result<(), Failure> {
+    fn run(&self, common: &Common) -> Result<(), CommandFailure> {
         // Checked before the long computation.
         let folder = Folder::open(&self.out, &["soft-hard"], false)?;
-        let question = Question {
+        let question = SoftHardComparison {
             discs: self.particles,
             packing_fraction: self.packing_fraction,
             restitution: self.restitution,
-            ..Question::REPORT
+            ..SoftHardComparison::REPORT
         };
         let (bar, start) = (progress(common, "chart"), Instant::now());
         let made = soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;

@@ -1,10 +1,10 @@
 //! Items of Langevin dynamics: each is a study with a page in the folder `pages`.
 
 use super::study::{accuracy, diffusion, losses, sectors};
-use crate::console::Failure;
+use crate::console::CommandFailure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
-use crate::results::{Item, Lab, Made, Size};
+use crate::results::{FinishedItem, Item, StudyEnvironment, StudySize};
 use stripmine_physics::method::langevin::laws::{LAW, PairLaw};
 use stripmine_physics::scene::Overrides;
 
@@ -17,7 +17,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("langevin-programs", counted),
 ];
 
-fn counted(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+fn counted(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let scene = |overrides: &Overrides| prepared("langevin-dense", overrides);
     let repulsive = Overrides::new().set(&LAW, PairLaw::Wca);
     programs::made(&[

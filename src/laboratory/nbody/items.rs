@@ -1,10 +1,10 @@
 //! Items of N-body dynamics: each is a study with a page in the folder `pages`.
 
 use super::study::{collapse, energy, rates};
-use crate::console::Failure;
+use crate::console::CommandFailure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepared;
-use crate::results::{Item, Lab, Made, Size};
+use crate::results::{FinishedItem, Item, StudyEnvironment, StudySize};
 use stripmine_physics::method::nbody::keys::COUNT;
 use stripmine_physics::scene::Overrides;
 
@@ -16,7 +16,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("nbody-programs", counted),
 ];
 
-fn counted(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+fn counted(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let scene = |count: u64| prepared("plummer", &Overrides::new().set(&COUNT, count));
     programs::made(&[("plummer, N = 1024", scene(1024)?), ("plummer, N = 16", scene(16)?)])
 }

@@ -1,24 +1,24 @@
 //! Cases of a grid, and their measurement in this process.
 
-use crate::console::Failure;
-use crate::frame::Cell;
-use crate::laboratory::running::{Running, on_threads};
+use crate::console::CommandFailure;
+use crate::frame::TableCell;
+use crate::laboratory::running::{RunningScene, on_threads};
 use crate::study::StudyError;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
 use std::time::Instant;
-use stripmine_physics::method::{self, METHODS, Purpose, load};
+use stripmine_physics::method::{self, METHODS, StartPurpose, load};
 use stripmine_physics::scene::Overrides;
 
 /// Measured work that is not a run of a scene.
 #[derive(Debug)]
-pub(crate) struct Own {
+pub(crate) struct StudyWork {
     /// Name by which the measuring process identifies the work.
     pub name: &'static str,
     /// Measures the work that some parameters describe.
-    pub(crate) measure: fn(&serde_json::Value) -> Result<Reading, StudyError>,
+    pub(crate) measure: fn(&serde_json::Value) -> Result<CaseReading, StudyError>,
 }
 
 /// Parses the parameters given to a measuring process.
@@ -31,16 +31,16 @@ pub(crate) fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Resu
 
 /// One case of a grid.
 #[derive(Clone, Debug)]
-pub(crate) struct Case {
-    pub(super) labels: Vec<(String, Cell)>,
-    pub(super) task: Task,
+pub(crate) struct RateCase {
+    pub(super) labels: Vec<(String, TableCell)>,
+    pub(super) task: CaseTask,
     /// Number of threads if wall time is measured; otherwise processor time is measured.
     pub(super) threads: Option<usize>,
 }
 
 /// Work of a case, as sent to another process.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) enum Task {
+pub(super) enum CaseTask {
     Scene {
         preset: String,
         overrides: Vec<String>,
@@ -54,47 +54,47 @@ pub(super) enum Task {
         name: String,
         parameters: serde_json::Value,
         #[serde(skip)]
-        own: Option<&'static Own>,
+        own: Option<&'static StudyWork>,
     },
 }
 
-impl Case {
+impl RateCase {
     /// Times a scene over some steps after a warm-up.
-    pub(crate) fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> Case {
-        Case::scene(preset, overrides, false, [warm_up, steps])
+    pub(crate) fn steps(preset: &str, overrides: &Overrides, warm_up: u64, steps: u64) -> RateCase {
+        RateCase::scene(preset, overrides, false, [warm_up, steps])
     }
 
     /// Times a scene over some events after a warm-up.
-    pub(crate) fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> Case {
-        Case::scene(preset, overrides, true, [warm_up, events])
+    pub(crate) fn events(preset: &str, overrides: &Overrides, warm_up: u64, events: u64) -> RateCase {
+        RateCase::scene(preset, overrides, true, [warm_up, events])
     }
 
-    fn scene(preset: &str, overrides: &Overrides, in_events: bool, amount: [u64; 2]) -> Case {
+    fn scene(preset: &str, overrides: &Overrides, in_events: bool, amount: [u64; 2]) -> RateCase {
         let (preset, overrides) = (preset.to_owned(), overrides.texts());
-        Case {
+        RateCase {
             labels: vec![],
-            task: Task::Scene { preset, overrides, in_events, amount, seconds: 0.0 },
+            task: CaseTask::Scene { preset, overrides, in_events, amount, seconds: 0.0 },
             threads: None,
         }
     }
 
     /// Times work that is not a run of a scene.
-    pub(crate) fn own(own: &'static Own, parameters: serde_json::Value) -> Case {
-        let task = Task::Own { name: own.name.to_owned(), parameters, own: Some(own) };
-        Case { labels: vec![], task, threads: None }
+    pub(crate) fn own(own: &'static StudyWork, parameters: serde_json::Value) -> RateCase {
+        let task = CaseTask::Own { name: own.name.to_owned(), parameters, own: Some(own) };
+        RateCase { labels: vec![], task, threads: None }
     }
 
     /// Adds a label that distinguishes the case: a column of the frame and a part of its name.
     #[must_use]
-    pub(crate) fn label(mut self, heading: &str, value: impl Into<Cell>) -> Case {
+    pub(crate) fn label(mut self, heading: &str, value: impl Into<TableCell>) -> RateCase {
         self.labels.push((heading.to_owned(), value.into()));
         self
     }
 
     /// Extends the case to more steps or events until they take at least `least` seconds.
     #[must_use]
-    pub(crate) fn for_seconds(mut self, least: f64) -> Case {
-        if let Task::Scene { seconds, .. } = &mut self.task {
+    pub(crate) fn for_seconds(mut self, least: f64) -> RateCase {
+        if let CaseTask::Scene { seconds, .. } = &mut self.task {
             *seconds = least;
         }
         self
@@ -102,30 +102,30 @@ impl Case {
 
     /// Runs the case on a number of threads and measures wall time. By default a case runs on one thread and measures processor time.
     #[must_use]
-    pub(crate) fn on_threads(self, threads: usize) -> Case {
-        Case { threads: Some(threads), ..self }
+    pub(crate) fn on_threads(self, threads: usize) -> RateCase {
+        RateCase { threads: Some(threads), ..self }
     }
 
     /// Name in messages.
     pub(super) fn name(&self) -> String {
-        let label = |(heading, value): &(String, Cell)| format!("{heading} = {}", value.for_reading());
+        let label = |(heading, value): &(String, TableCell)| format!("{heading} = {}", value.for_reading());
         self.labels.iter().map(label).collect::<Vec<_>>().join(", ")
     }
 
     /// Measures the case. `all` lists the work other than scenes, for cases sent by another process.
-    pub(super) fn measure(&self, all: &[&Own]) -> Result<Reading, Failure> {
+    pub(super) fn measure(&self, all: &[&StudyWork]) -> Result<CaseReading, CommandFailure> {
         let threads = self.threads.unwrap_or(1);
         let measured = match &self.task {
-            Task::Own { name, parameters, own } => {
+            CaseTask::Own { name, parameters, own } => {
                 let known = || all.iter().find(|it| it.name == name).copied();
                 let unknown = || io::Error::other(format!("unknown measured work `{name}`"));
-                let own = own.or_else(known).ok_or_else(unknown).map_err(Failure::writing("cases"))?;
+                let own = own.or_else(known).ok_or_else(unknown).map_err(CommandFailure::writing("cases"))?;
                 on_threads(threads, || (own.measure)(parameters))
             }
-            Task::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
+            CaseTask::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
                 let (prepared, method) = load(preset, overrides, METHODS)?;
-                let mut running = Running::of(method, &prepared, Purpose::Measurement)?;
-                let mut advance = |running: &mut Running, amount: u64| match in_events {
+                let mut running = RunningScene::of(method, &prepared, StartPurpose::Measurement)?;
+                let mut advance = |running: &mut RunningScene, amount: u64| match in_events {
                     true => running.events(amount),
                     false => running.steps(amount),
                 };
@@ -149,15 +149,15 @@ fn processor() -> Box<dyn Fn() -> f64> {
 
 /// Times a running scene over at least `least` steps or events and at least `seconds`.
 fn timed(
-    running: &mut Running,
+    running: &mut RunningScene,
     [warm_up, least]: [u64; 2],
     seconds: f64,
-    advance: &mut dyn FnMut(&mut Running, u64) -> Result<(), method::Failure>,
+    advance: &mut dyn FnMut(&mut RunningScene, u64) -> Result<(), method::PhysicsFailure>,
     clock: fn() -> Box<dyn Fn() -> f64>,
-) -> Result<Reading, StudyError> {
+) -> Result<CaseReading, StudyError> {
     advance(running, warm_up)?;
     running.simulation.reset_phases();
-    let counts = |running: &Running| running.simulation.event_operations();
+    let counts = |running: &RunningScene| running.simulation.event_operations();
     let (work, before) = (running.simulation.work(), counts(running));
     let elapsed = clock();
     advance(running, least)?;
@@ -171,7 +171,7 @@ fn timed(
     let seconds = elapsed();
     let owned = |(name, value): (&str, f64)| (name.to_owned(), value);
     let after = counts(running).into_iter().zip(before);
-    Ok(Reading {
+    Ok(CaseReading {
         work: running.simulation.work() - work,
         seconds,
         parts: running.simulation.phases().into_iter().map(owned).collect(),
@@ -181,7 +181,7 @@ fn timed(
 
 /// Measurement of a case by one process.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Reading {
+pub(crate) struct CaseReading {
     /// Work done: particle-steps, events, interactions.
     pub work: f64,
     /// Measured seconds.
@@ -203,7 +203,7 @@ mod tests {
         thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });
         let clock: fn() -> Box<dyn Fn() -> f64> = || Box::new(|| NOW.get());
         let discs = Overrides::new().set(&COUNT, 16_u64);
-        let mut running = Running::timed("hard-disks", &discs).unwrap();
+        let mut running = RunningScene::timed("hard-disks", &discs).unwrap();
         let mut amounts = vec![];
         let found = timed(
             &mut running,

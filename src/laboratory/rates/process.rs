@@ -1,30 +1,39 @@
 //! Measurements in a child process: the program calls itself, and the two processes communicate through pipes with one line of JSON per reading.
 
-use super::case::{Case, Own, Reading, Task};
-use crate::console::{Failure, print};
+use super::case::{CaseReading, CaseTask, RateCase, StudyWork};
+use crate::console::{CommandFailure, print};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
-use stripmine_physics::reported::Class;
+use stripmine_physics::reported::ErrorClass;
 use stripmine_physics::signals::INTERRUPTED;
 
 /// Class and message of a failure; no class if a signal ended the process.
-pub(super) type Failed = (Option<Class>, String);
+pub(super) type ProcessFailure = (Option<ErrorClass>, String);
 
 /// Verb of the measuring process.
 pub(crate) const VERB: &str = "measure-cases";
 
 /// Measures some cases in order in a new process of the program.
-pub(super) fn measure(program: &Path, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
+pub(super) fn measure(
+    program: &Path,
+    cases: &[&RateCase],
+    heard: &mut dyn FnMut(CaseReading),
+) -> Result<(), ProcessFailure> {
     let mut command = Command::new(program);
     command.args([VERB, "--quiet"]);
     answered(&mut command, cases, heard)
 }
 
 /// Runs a command and receives its readings of some cases.
-fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Reading)) -> Result<(), Failed> {
-    let failed = |cause: io::Error| (Some(Class::InputOutput), format!("the measuring process: {cause}"));
+fn answered(
+    command: &mut Command,
+    cases: &[&RateCase],
+    heard: &mut dyn FnMut(CaseReading),
+) -> Result<(), ProcessFailure> {
+    let failed =
+        |cause: io::Error| (Some(ErrorClass::InputOutput), format!("the measuring process: {cause}"));
     let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = piped.spawn().map_err(failed)?;
     let errors = child.stderr.take();
@@ -36,7 +45,8 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     });
     // The child ends when this pipe closes: keep it open until the child has ended, or this process is gone.
     let mut asked = child.stdin.take();
-    let cases: Vec<(&Task, Option<usize>)> = cases.iter().map(|case| (&case.task, case.threads)).collect();
+    let cases: Vec<(&CaseTask, Option<usize>)> =
+        cases.iter().map(|case| (&case.task, case.threads)).collect();
     let line = serde_json::to_string(&cases).map_err(|cause| failed(cause.into()))? + "\n";
     if let Some(asked) = &mut asked {
         // A child that is gone reports the reason on standard error.
@@ -44,7 +54,8 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
     }
     let mut readings = 0;
     for line in child.stdout.take().into_iter().flat_map(|answers| BufReader::new(answers).lines()) {
-        let reading = line.and_then(|line| Ok(serde_json::from_str::<Reading>(&line)?)).map_err(failed)?;
+        let reading =
+            line.and_then(|line| Ok(serde_json::from_str::<CaseReading>(&line)?)).map_err(failed)?;
         heard(reading);
         readings += 1;
     }
@@ -59,11 +70,11 @@ fn answered(command: &mut Command, cases: &[&Case], heard: &mut dyn FnMut(Readin
 }
 
 /// Failure of a process, from its exit status and message.
-fn failure(status: ExitStatus, words: &str) -> Failed {
+fn failure(status: ExitStatus, words: &str) -> ProcessFailure {
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     let class = match code {
         Some(INTERRUPTED) => None,
-        code => Some(code.and_then(Class::of_exit_code).unwrap_or(Class::InputOutput)),
+        code => Some(code.and_then(ErrorClass::of_exit_code).unwrap_or(ErrorClass::InputOutput)),
     };
     let words = words.trim();
     let said = words.strip_prefix("error: ").unwrap_or(words);
@@ -79,20 +90,21 @@ fn failure(status: ExitStatus, words: &str) -> Failed {
 ///
 /// # Errors
 /// [`Failure`] of a case, or of standard input that does not contain cases.
-pub(crate) fn serve(all: &[&Own]) -> Result<(), Failure> {
+pub(crate) fn serve(all: &[&StudyWork]) -> Result<(), CommandFailure> {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);
-    let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<(Task, Option<usize>)>>(&line)?));
-    let cases = cases.map_err(Failure::writing("cases on standard input"))?;
+    let cases = read.and_then(|_| Ok(serde_json::from_str::<Vec<(CaseTask, Option<usize>)>>(&line)?));
+    let cases = cases.map_err(CommandFailure::writing("cases on standard input"))?;
     thread::spawn(|| {
         // The parent holds the other end as long as it waits.
         drop(io::copy(&mut io::stdin().lock(), &mut io::sink()));
         std::process::exit(INTERRUPTED.into());
     });
     for (task, threads) in cases {
-        let reading = Case { labels: vec![], task, threads }.measure(all)?;
+        let reading = RateCase { labels: vec![], task, threads }.measure(all)?;
         print(
-            &(serde_json::to_string(&reading).map_err(|cause| Failure::writing("JSON")(cause.into()))?
+            &(serde_json::to_string(&reading)
+                .map_err(|cause| CommandFailure::writing("JSON")(cause.into()))?
                 + "\n"),
         )?;
     }
@@ -104,8 +116,8 @@ mod tests {
     use super::*;
     use stripmine_physics::scene::Overrides;
 
-    fn shell(script: &str) -> (Result<(), Failed>, Vec<f64>) {
-        let case = Case::steps("bench", &Overrides::new(), 0, 1);
+    fn shell(script: &str) -> (Result<(), ProcessFailure>, Vec<f64>) {
+        let case = RateCase::steps("bench", &Overrides::new(), 0, 1);
         let (mut command, mut heard) = (Command::new("sh"), vec![]);
         let outcome = answered(command.args(["-c", script]), &[&case; 2], &mut |it| heard.push(it.work));
         (outcome, heard)
@@ -122,18 +134,24 @@ mod tests {
             assert_eq!(heard, [3.0]);
             outcome.unwrap_err()
         };
-        let class = |class: Class| Some(class);
-        assert_eq!(failing("echo 'error: no' >&2; exit 4"), (class(Class::Precondition), "no".to_owned()));
+        let class = |class: ErrorClass| Some(class);
+        assert_eq!(
+            failing("echo 'error: no' >&2; exit 4"),
+            (class(ErrorClass::Precondition), "no".to_owned())
+        );
         assert_eq!(failing("exit 130").0, None);
         let (killed, said) = failing("kill -9 $$");
-        assert!(killed == class(Class::InputOutput) && said.contains("signal"), "{said}");
+        assert!(killed == class(ErrorClass::InputOutput) && said.contains("signal"), "{said}");
         assert!(failing("exit 0").1.contains("ended early"));
-        assert_eq!(failing("echo words").0, class(Class::InputOutput));
+        assert_eq!(failing("echo words").0, class(ErrorClass::InputOutput));
     }
 
     #[test]
     fn a_missing_program_is_an_error() {
         let (class, said) = measure(Path::new("/no/such/program"), &[], &mut |_| ()).unwrap_err();
-        assert!(class == Some(Class::InputOutput) && said.starts_with("the measuring process: "), "{said}");
+        assert!(
+            class == Some(ErrorClass::InputOutput) && said.starts_with("the measuring process: "),
+            "{said}"
+        );
     }
 }

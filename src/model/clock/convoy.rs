@@ -1,15 +1,15 @@
 //! Convoys: sets of vector instructions that begin together, Hennessy and Patterson, *Computer Architecture*, vector
 //! processors.
 
-use crate::model::machine::Resource;
+use crate::model::machine::MachineResource;
 use crate::model::machine::{ClassCounts, MachineModel};
 use std::collections::HashMap;
-use stripmine_kernels::backend::tape::{Outline, Place, RegisterName};
+use stripmine_kernels::backend::tape::{Outline, RegisterName, VectorLocation};
 use stripmine_kernels::isa::{Array, OpClass};
 
 /// Model of memory access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Memory {
+pub(crate) enum MemoryModel {
     /// An unlimited number of ports, each with an element per clock period.
     NeverBusy,
     /// The ports and rates of the machine.
@@ -32,7 +32,7 @@ pub(crate) struct Convoy {
 ///
 /// The number of registers is unlimited, so only true dependences count. An expansion is a chain of dependent steps with its classes spread evenly
 /// over it: machine files state the number of each, not their order. Data stored by a convoy are not loaded by the same convoy.
-pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory) -> Vec<Convoy> {
+pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: MemoryModel) -> Vec<Convoy> {
     let mut issue = Issue { machine, memory, convoys: vec![], used: HashMap::new(), results: HashMap::new() };
     for outline in order {
         issue.instruction(outline);
@@ -42,17 +42,17 @@ pub(crate) fn convoys(machine: &MachineModel, order: &[Outline], memory: Memory)
 
 /// A result that an instruction may wait for.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Result {
+enum IssuedResult {
     Register(RegisterName),
     Array(Array, &'static str),
 }
 
-impl Result {
-    fn at(place: &Place) -> Result {
+impl IssuedResult {
+    fn at(place: &VectorLocation) -> IssuedResult {
         match place {
-            Place::Register(name) => Result::Register(*name),
-            Place::Memory(reference) | Place::Indexed(reference) => {
-                Result::Array(reference.array, reference.element)
+            VectorLocation::Register(name) => IssuedResult::Register(*name),
+            VectorLocation::Memory(reference) | VectorLocation::Indexed(reference) => {
+                IssuedResult::Array(reference.array, reference.element)
             }
         }
     }
@@ -61,12 +61,12 @@ impl Result {
 /// The convoy being filled, with the units and results in use.
 struct Issue<'m> {
     machine: &'m MachineModel,
-    memory: Memory,
+    memory: MemoryModel,
     convoys: Vec<Convoy>,
     /// Instructions of the open convoy on each unit.
-    used: HashMap<Resource<'m>, f64>,
+    used: HashMap<MachineResource<'m>, f64>,
     /// Results of the open convoy: clock periods until their first element.
-    results: HashMap<Result, f64>,
+    results: HashMap<IssuedResult, f64>,
 }
 
 impl Issue<'_> {
@@ -76,18 +76,19 @@ impl Issue<'_> {
             before = Some(self.step(class, outline, before));
         }
         if let (Some(place), Some(first_element)) = (&outline.writes, before) {
-            self.results.insert(Result::at(place), first_element);
+            self.results.insert(IssuedResult::at(place), first_element);
         }
     }
 
     /// Issues one step, which needs the operands of the instruction and its step `before`; returns the time of its first element.
     fn step(&mut self, class: OpClass, outline: &Outline, before: Option<f64>) -> f64 {
         let unit = self.machine.unit(class).filter(|unit| {
-            !(self.memory == Memory::NeverBusy && matches!(unit.resource, Resource::Loads | Resource::Stores))
+            !(self.memory == MemoryModel::NeverBusy
+                && matches!(unit.resource, MachineResource::Loads | MachineResource::Stores))
         });
         let awaited = outline.reads.iter().filter_map(|place| {
-            let result = Result::at(place);
-            Some((matches!(result, Result::Array(..)), *self.results.get(&result)?))
+            let result = IssuedResult::at(place);
+            Some((matches!(result, IssuedResult::Array(..)), *self.results.get(&result)?))
         });
         let awaited: Vec<(bool, f64)> = awaited.chain(before.map(|before| (false, before))).collect();
         let must_wait = awaited.iter().any(|&(stored, _)| stored || !self.machine.chains());

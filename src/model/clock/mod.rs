@@ -9,8 +9,8 @@ mod convoy;
 mod tests;
 mod work;
 
-pub(crate) use convoy::{Memory, convoys};
-pub use work::Work;
+pub(crate) use convoy::{MemoryModel, convoys};
+pub use work::ProgramWork;
 
 use super::machine::MachineModel;
 
@@ -39,7 +39,7 @@ macro_rules! define_clocks {
             /// Charge of `work` on `machine`, for vectors of any length.
             ///
             /// Operations the machine lacks are expanded first.
-            fn charge(self, machine: &MachineModel, work: &Work) -> Charge {
+            fn charge(self, machine: &MachineModel, work: &ProgramWork) -> Charge {
                 match self { $(Clock::$variant => $charge(machine, work)),* }
             }
         }
@@ -65,7 +65,7 @@ impl Clock {
     /// Clock periods that `work` takes on `machine` over vectors of `n` elements.
     ///
     /// Empty vectors (`n` = 0) cost nothing: no instruction is issued for them.
-    pub fn clocks(self, machine: &MachineModel, work: &Work, n: u64) -> f64 {
+    pub fn clocks(self, machine: &MachineModel, work: &ProgramWork, n: u64) -> f64 {
         self.charge(machine, work).clocks(n)
     }
 }
@@ -91,44 +91,44 @@ impl Charge {
 }
 
 /// `NOP · n`: time proportional to the number of operations.
-fn operations(machine: &MachineModel, work: &Work) -> Charge {
+fn operations(machine: &MachineModel, work: &ProgramWork) -> Charge {
     Charge { each_element: work.sum(machine, |_| 1.0), ..Charge::default() }
 }
 
 /// `NOP · n · D`: without a pipeline every element passes through the whole depth of its unit.
-fn scalar(machine: &MachineModel, work: &Work) -> Charge {
+fn scalar(machine: &MachineModel, work: &ProgramWork) -> Charge {
     Charge { each_element: work.sum(machine, |start_up| start_up), ..Charge::default() }
 }
 
 /// `NOP · (n + D)`: the pipeline fills once, then delivers one element per clock period.
-fn paper(machine: &MachineModel, work: &Work) -> Charge {
+fn paper(machine: &MachineModel, work: &ProgramWork) -> Charge {
     Charge { each_strip: work.sum(machine, |start_up| start_up), ..operations(machine, work) }
 }
 
 /// Charges as the paper's clock, with a start-up for every strip of one register, and the loop around the strips.
 ///
 /// A machine without vector registers is charged by the paper's clock.
-fn registers(machine: &MachineModel, work: &Work) -> Charge {
+fn registers(machine: &MachineModel, work: &ProgramWork) -> Charge {
     strip_mined(machine, paper(machine, work))
 }
 
 /// `T_start` and `T_chime` from the convoys of the program; memory is never busy.
-fn chained(machine: &MachineModel, work: &Work) -> Charge {
-    in_convoys(machine, work, Memory::NeverBusy)
+fn chained(machine: &MachineModel, work: &ProgramWork) -> Charge {
+    in_convoys(machine, work, MemoryModel::NeverBusy)
 }
 
 /// Charges as the chained clock, with as many loads and stores in a convoy as the machine has ports, at the rate of its memory.
 ///
 /// A machine without stated memory is charged by the chained clock. Conflicts of memory banks, and the loads and stores of vectors for
 /// which the machine has too few registers, are not modelled.
-fn ports(machine: &MachineModel, work: &Work) -> Charge {
-    in_convoys(machine, work, Memory::Ports)
+fn ports(machine: &MachineModel, work: &ProgramWork) -> Charge {
+    in_convoys(machine, work, MemoryModel::Ports)
 }
 
 /// Charge of a program's convoys.
 ///
 /// A machine without stated functional units, and work in no known order, are charged by the strip-mined clock.
-fn in_convoys(machine: &MachineModel, work: &Work, memory: Memory) -> Charge {
+fn in_convoys(machine: &MachineModel, work: &ProgramWork, memory: MemoryModel) -> Charge {
     let (Some(order), true) = (work.order(), machine.has_units()) else {
         return registers(machine, work);
     };

@@ -3,12 +3,12 @@
 use super::*;
 use crate::model::machine::MachineModel;
 use crate::model::machines::{names, preset};
-use stripmine_kernels::backend::tape::{File, Outline, Place, Reference, RegisterName};
+use stripmine_kernels::backend::tape::{ArrayReference, Outline, RegisterKind, RegisterName, VectorLocation};
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::isa::OpCounts;
 use stripmine_kernels::isa::op::Op;
 
-fn counts_of(op: Op, times: u64) -> Work {
+fn counts_of(op: Op, times: u64) -> ProgramWork {
     let mut counts = OpCounts::default();
     (0..times).for_each(|_| counts.record(op));
     counts.into()
@@ -74,7 +74,7 @@ fn empty_vectors_and_empty_counts_cost_nothing() {
     let machine = preset("cray-1").unwrap();
     for &clock in Clock::ALL {
         assert_eq!(clock.clocks(&machine, &counts_of(Op::SquareRoot, 5), 0), 0.0);
-        assert_eq!(clock.clocks(&machine, &Work::default(), 1_000), 0.0);
+        assert_eq!(clock.clocks(&machine, &ProgramWork::default(), 1_000), 0.0);
     }
 }
 
@@ -105,21 +105,21 @@ fn textbook(chaining: bool) -> MachineModel {
     MachineModel::parse("textbook.toml", &text.concat()).unwrap()
 }
 
-fn register(number: u32) -> Place {
-    Place::Register(RegisterName { file: File::Number, number })
+fn register(number: u32) -> VectorLocation {
+    VectorLocation::Register(RegisterName { file: RegisterKind::Number, number })
 }
 
-fn array(array: Array) -> Place {
-    Place::Memory(Reference { array, element: "f64", shift: 0 })
+fn array(array: Array) -> VectorLocation {
+    VectorLocation::Memory(ArrayReference { array, element: "f64", shift: 0 })
 }
 
-fn instruction(op: Op, reads: &[Place], to: Place) -> Outline {
+fn instruction(op: Op, reads: &[VectorLocation], to: VectorLocation) -> Outline {
     Outline { op, converts: false, reads: reads.to_vec(), writes: Some(to) }
 }
 
 /// Y = a X + Y.
-fn daxpy() -> Work {
-    Work::in_order(vec![
+fn daxpy() -> ProgramWork {
+    ProgramWork::in_order(vec![
         instruction(Op::Load, &[array(Array::X)], register(0)),
         instruction(Op::Multiply, &[register(0)], register(1)),
         instruction(Op::Load, &[array(Array::Y)], register(2)),
@@ -139,7 +139,7 @@ fn strip_mining_formula_matches_the_textbook() {
 #[test]
 fn daxpy_convoys_match_the_textbook() {
     let machine = textbook(true);
-    let convoys = convoys(&machine, daxpy().order().unwrap(), Memory::Ports);
+    let convoys = convoys(&machine, daxpy().order().unwrap(), MemoryModel::Ports);
     // Load and multiply, load and add, store: starts 12 + 7, 12 + 6 and 12, together 49; three chimes.
     assert_eq!(convoys.iter().map(|convoy| convoy.instructions).collect::<Vec<_>>(), [2, 2, 1]);
     assert_eq!(convoys.iter().map(|convoy| convoy.start_up).collect::<Vec<_>>(), [19.0, 18.0, 12.0]);
@@ -151,7 +151,7 @@ fn daxpy_convoys_match_the_textbook() {
 
 #[test]
 fn chaining_reduces_141_clocks_to_77() {
-    let pair = Work::in_order(vec![
+    let pair = ProgramWork::in_order(vec![
         instruction(Op::Multiply, &[register(0), register(1)], register(2)),
         instruction(Op::Add, &[register(2), register(3)], register(4)),
     ]);
@@ -163,12 +163,12 @@ fn chaining_reduces_141_clocks_to_77() {
 #[test]
 fn stored_data_are_loaded_by_later_convoys() {
     let machine = textbook(true);
-    let program = Work::in_order(vec![
+    let program = ProgramWork::in_order(vec![
         instruction(Op::Store, &[register(0)], array(Array::X)),
         instruction(Op::Load, &[array(Array::X)], register(1)),
         instruction(Op::Load, &[array(Array::Y)], register(2)),
     ]);
-    let convoys = convoys(&machine, program.order().unwrap(), Memory::NeverBusy);
+    let convoys = convoys(&machine, program.order().unwrap(), MemoryModel::NeverBusy);
     assert_eq!(convoys.iter().map(|convoy| convoy.instructions).collect::<Vec<_>>(), [1, 2]);
 }
 

@@ -7,22 +7,22 @@ use stripmine_kernels::isa::OpCounts;
 
 /// Operations of a program: the number of each and, if known, their order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Work {
+pub struct ProgramWork {
     counts: OpCounts,
     order: Vec<Outline>,
 }
 
-impl Work {
+impl ProgramWork {
     /// Instructions of a program.
-    pub fn of(program: &dyn Runnable) -> Work {
-        Work::in_order(program.outlines().instructions)
+    pub fn of(program: &dyn Runnable) -> ProgramWork {
+        ProgramWork::in_order(program.outlines().instructions)
     }
 
     /// Instructions in a given order.
-    pub fn in_order(order: Vec<Outline>) -> Work {
+    pub fn in_order(order: Vec<Outline>) -> ProgramWork {
         let mut counts = OpCounts::default();
         order.iter().flat_map(Outline::operations).for_each(|op| counts.record(op));
-        Work { counts, order }
+        ProgramWork { counts, order }
     }
 
     /// Instructions in their order; none where only counts are known, which no clock can chain.
@@ -40,9 +40,9 @@ impl Work {
     }
 }
 
-impl From<OpCounts> for Work {
+impl From<OpCounts> for ProgramWork {
     /// Operations in no known order.
-    fn from(counts: OpCounts) -> Work {
-        Work { counts, order: vec![] }
+    fn from(counts: OpCounts) -> ProgramWork {
+        ProgramWork { counts, order: vec![] }
     }
 }

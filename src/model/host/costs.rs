@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
-use stripmine_kernels::backend::tape::{Outline, Outlines, Place};
+use stripmine_kernels::backend::tape::{Outline, Outlines, VectorLocation};
 use stripmine_kernels::isa::{Array, OpClass};
 
 /// Prices of a kind of execution on lanes of one element type (ns).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Costs {
+pub(crate) struct ExecutionPrices {
     /// Price of a run of a program.
     pub run: f64,
     /// Price of the start of a pass of the interpreter.
@@ -31,21 +31,21 @@ pub struct LaneCosts {
     /// Lanes of a hardware register.
     pub lanes: usize,
     /// Prices of the interpreter, pass by pass.
-    pub(crate) interpreted: Costs,
+    pub(crate) interpreted: ExecutionPrices,
     /// Prices of a compiled loop.
-    pub(crate) chained: Costs,
+    pub(crate) chained: ExecutionPrices,
 }
 
 /// Amounts that a run of a program is charged for: a run, starts of passes, operations on elements, those through an index vector, and bytes at
 /// each footprint.
 pub(crate) type Charges = Vec<f64>;
 
-impl Costs {
+impl ExecutionPrices {
     /// Prices in the order of `Charges`.
-    pub(crate) fn of(prices: &[f64]) -> Costs {
+    pub(crate) fn of(prices: &[f64]) -> ExecutionPrices {
         let [run, start, operation, indexed] =
             std::array::from_fn(|at| prices.get(at).copied().unwrap_or(0.0));
-        Costs { run, start, operation, indexed, bytes: prices.iter().skip(4).copied().collect() }
+        ExecutionPrices { run, start, operation, indexed, bytes: prices.iter().skip(4).copied().collect() }
     }
 
     /// Total of the charges in nanoseconds.
@@ -62,7 +62,7 @@ pub(crate) fn charges(
     outlines: &Outlines,
     (n, execution): (usize, Execution),
     (register_bytes, lanes): ([f64; 3], usize),
-    around: &Around,
+    around: &StepArrays,
     footprints: &[f64],
 ) -> Charges {
     let is_chained = execution == Execution::Chained;
@@ -109,48 +109,48 @@ const LINE: f64 = 64.0;
 
 /// Arrays of a step by name and element type, with their sizes in bytes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Around(BTreeMap<(Array, &'static str), f64>);
+pub(crate) struct StepArrays(BTreeMap<(Array, &'static str), f64>);
 
 /// Bytes moved, and the footprint between two visits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Moved {
+struct MovedBytes {
     bytes: f64,
     footprint: f64,
 }
 
-impl Around {
+impl StepArrays {
     /// Collects the arrays of programs that run one after the other over vectors of these lengths.
-    pub(crate) fn of_step(programs: &[(&Outlines, usize)]) -> Around {
+    pub(crate) fn of_step(programs: &[(&Outlines, usize)]) -> StepArrays {
         // An array visited element by element has that length; an index vector gives no length.
         let [mut direct, mut indexed]: [BTreeMap<_, f64>; 2] = Default::default();
         for (outlines, n) in programs {
             for place in places(outlines) {
                 let (extents, reference) = match place {
-                    Place::Memory(reference) => (&mut direct, reference),
-                    Place::Indexed(reference) => (&mut indexed, reference),
-                    Place::Register(_) => continue,
+                    VectorLocation::Memory(reference) => (&mut direct, reference),
+                    VectorLocation::Indexed(reference) => (&mut indexed, reference),
+                    VectorLocation::Register(_) => continue,
                 };
                 let extent = extents.entry((reference.array, reference.element)).or_default();
                 *extent = extent.max(element_bytes(reference.element) * *n as f64);
             }
         }
         indexed.extend(direct);
-        Around(indexed)
+        StepArrays(indexed)
     }
 
     /// Bytes that a program moves in a strip of `n` elements: of arrays that it visits for the first time, at the footprint of the whole
     /// step, and of arrays that it visits again or has in registers, of `register_bytes` by file.
-    fn moved(&self, outlines: &Outlines, n: f64, register_bytes: [f64; 3]) -> [Moved; 2] {
+    fn moved(&self, outlines: &Outlines, n: f64, register_bytes: [f64; 3]) -> [MovedBytes; 2] {
         let (mut first, mut again, mut visited) = (0.0, 0.0, vec![]);
         for place in places(outlines) {
             let (bytes, reference) = match place {
-                Place::Register(name) => {
+                VectorLocation::Register(name) => {
                     again += n * register_bytes[name.file as usize];
                     continue;
                 }
-                Place::Memory(it) => (n * element_bytes(it.element), it),
+                VectorLocation::Memory(it) => (n * element_bytes(it.element), it),
                 // An indexed element moves a whole line, but at most the whole array.
-                Place::Indexed(it) => {
+                VectorLocation::Indexed(it) => {
                     let all = self.0.get(&(it.array, it.element)).copied().unwrap_or(f64::INFINITY);
                     ((n * LINE).min(all), it)
                 }
@@ -167,13 +167,13 @@ impl Around {
         let registers: f64 = files.map(|(&count, bytes)| count as f64 * bytes * n).sum();
         let arrays: f64 = visited.iter().map(|(_, element)| n * element_bytes(element)).sum();
         [
-            Moved { bytes: first, footprint: registers + self.0.values().sum::<f64>() },
-            Moved { bytes: again, footprint: registers + arrays },
+            MovedBytes { bytes: first, footprint: registers + self.0.values().sum::<f64>() },
+            MovedBytes { bytes: again, footprint: registers + arrays },
         ]
     }
 }
 
-fn places(outlines: &Outlines) -> impl Iterator<Item = &Place> {
+fn places(outlines: &Outlines) -> impl Iterator<Item = &VectorLocation> {
     outlines.passes.iter().flat_map(|pass| pass.reads.iter().chain(&pass.writes))
 }
 
@@ -191,7 +191,7 @@ fn element_bytes(element: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::backend::tape::{File, Reference, RegisterName};
+    use stripmine_kernels::backend::tape::{ArrayReference, RegisterKind, RegisterName};
     use stripmine_kernels::isa::Op;
 
     const SHAPE: ([f64; 3], usize) = ([8.0, 1.0, 4.0], 4);
@@ -212,31 +212,34 @@ mod tests {
         let (passes, instructions) =
             (vec![of(Op::Add), of(Op::Gather)], vec![of(Op::Load), of(Op::Multiply)]);
         let program = Outlines { lane: "f64", instructions, passes, registers: [0; 3] };
-        let charged = |n, execution| charges(&program, (n, execution), SHAPE, &Around::default(), &[]);
+        let charged = |n, execution| charges(&program, (n, execution), SHAPE, &StepArrays::default(), &[]);
         assert_eq!(charged(8, Execution::Eager), [1.0, 2.0, 16.0, 8.0]);
         // Passes start twice where elements are left over, and once per strip.
         assert_eq!(charged(9, Execution::Eager), [1.0, 4.0, 18.0, 9.0]);
         assert_eq!(charged(9, Execution::Strip(4)), [1.0, 6.0, 18.0, 9.0]);
         assert_eq!(charged(9, Execution::Chained), [1.0, 0.0, 18.0, 0.0]);
-        let costs = Costs::of(&[100.0, 10.0, 0.5, 2.0]);
+        let costs = ExecutionPrices::of(&[100.0, 10.0, 0.5, 2.0]);
         assert_eq!(costs.total(&charged(8, Execution::Eager)), 100.0 + 20.0 + 8.0 + 16.0);
     }
 
     /// By hand: an array visited twice, one through an index, and a register, by a program over 10 of 100 elements.
     #[test]
     fn first_visits_have_the_step_footprint() {
-        let x = Reference { array: Array::X, element: "f64", shift: 0 };
-        let y = Reference { array: Array::Y, element: "f32", shift: 0 };
-        let register = Place::Register(RegisterName { file: File::Number, number: 0 });
-        let pass = |reads: &[Place]| Outline {
+        let x = ArrayReference { array: Array::X, element: "f64", shift: 0 };
+        let y = ArrayReference { array: Array::Y, element: "f32", shift: 0 };
+        let register = VectorLocation::Register(RegisterName { file: RegisterKind::Number, number: 0 });
+        let pass = |reads: &[VectorLocation]| Outline {
             op: Op::Add,
             converts: false,
             reads: reads.to_vec(),
             writes: Some(register),
         };
-        let passes = vec![pass(&[Place::Memory(x)]), pass(&[Place::Memory(x), Place::Indexed(y)])];
+        let passes = vec![
+            pass(&[VectorLocation::Memory(x)]),
+            pass(&[VectorLocation::Memory(x), VectorLocation::Indexed(y)]),
+        ];
         let program = Outlines { lane: "f64", instructions: vec![], passes, registers: [3, 0, 0] };
-        let around = Around::of_step(&[(&program, 100)]);
+        let around = StepArrays::of_step(&[(&program, 100)]);
         let [first, again] = around.moved(&program, 10.0, SHAPE.0);
         // 80 bytes of x, and a whole y instead of ten lines; three registers of 80 bytes and arrays of 800 and 400.
         assert_eq!((first.bytes, first.footprint), (80.0 + 400.0, 240.0 + 1200.0));

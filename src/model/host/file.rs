@@ -1,15 +1,15 @@
 //! Host files, as written by `calibrate`, in TOML.
 
 use super::model::HostModel;
-use crate::model::file::{Entry, Kind};
+use crate::model::file::{FileEntry, FileKind};
 use std::path::Path;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::input::InputErrors;
 
 /// Format version that this program reads.
 pub(crate) const FORMAT: u32 = 15;
-const KIND: Kind<HostModel> =
-    Kind { format: FORMAT, remedy: Some("calibrate again"), wrong, completed: HostModel::checked };
+const KIND: FileKind<HostModel> =
+    FileKind { format: FORMAT, remedy: Some("calibrate again"), wrong, completed: HostModel::checked };
 /// Upper bound of the numbers of a host file: with larger ones the sum over a step might not be finite.
 const MOST: f64 = 1e15;
 
@@ -66,7 +66,7 @@ impl HostModel {
 }
 
 /// Describes the error of a number, if any.
-fn wrong(entry: &Entry<'_>) -> Option<String> {
+fn wrong(entry: &FileEntry<'_>) -> Option<String> {
     let number = entry.number()?;
     let (range, words) = match entry.names.last() {
         // Numbers of lanes and of elements.

@@ -9,10 +9,10 @@ mod out_of_range;
 mod rates;
 
 pub use costs::LaneCosts;
-pub(crate) use costs::{Around, Costs, charges};
+pub(crate) use costs::{ExecutionPrices, StepArrays, charges};
 pub(crate) use file::FORMAT;
 pub use file::default_model;
 pub use model::HostModel;
-pub(crate) use model::Measured;
+pub(crate) use model::MeasurementConditions;
 pub(crate) use out_of_range::OutOfRange;
-pub(crate) use rates::{Amounts, MAKING, Rates, Units};
+pub(crate) use rates::{AmountUnits, Amounts, MAKING, PhaseRates};

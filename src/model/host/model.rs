@@ -1,8 +1,8 @@
 //! Model of a host, and its predictions for programs.
 
-use super::costs::{Around, LaneCosts, charges};
+use super::costs::{LaneCosts, StepArrays, charges};
 use super::out_of_range::OutOfRange;
-use super::rates::{Amounts, Rates, phase};
+use super::rates::{Amounts, PhaseRates, phase};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
@@ -12,7 +12,7 @@ use stripmine_physics::number::{counted, significant};
 /// Conditions of a measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Measured {
+pub(crate) struct MeasurementConditions {
     /// State of the machine: quiet, busy, noisy, changing, or unknown.
     pub state: String,
     /// Load average of the last minute before the start; none where the system does not report it.
@@ -34,7 +34,7 @@ pub(crate) struct Measured {
     pub(crate) residual: f64,
 }
 
-impl Measured {
+impl MeasurementConditions {
     /// Largest spread of a steady machine: beyond it the samples are noisy, or the halves of the measurement differ.
     const UNSTEADY: f64 = 0.05;
 
@@ -53,9 +53,9 @@ impl Measured {
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let seen = match (spread, disagreement) {
             (Some(spread), Some(apart)) => {
-                let noisy = (spread > Measured::UNSTEADY)
+                let noisy = (spread > MeasurementConditions::UNSTEADY)
                     .then(|| format!("noisy: half of the samples lie within {}", percent(spread)));
-                let changing = (apart > Measured::UNSTEADY)
+                let changing = (apart > MeasurementConditions::UNSTEADY)
                     .then(|| format!("changing: the halves of the measurement differ by {}", percent(apart)));
                 noisy.into_iter().chain(changing).collect()
             }
@@ -85,13 +85,13 @@ pub struct HostModel {
     /// Footprints at which a byte has a price, rising; prices between them are interpolated by the logarithm (bytes).
     pub(crate) footprints: Vec<f64>,
     /// Conditions of the measurement.
-    pub(crate) measured: Measured,
+    pub(crate) measured: MeasurementConditions,
     /// Prices of programs by the element type of the lanes.
     pub programs: BTreeMap<String, LaneCosts>,
     /// Fewest and most discs of the steps that rates were fitted to.
     pub discs: [f64; 2],
     /// Rates of work whose amount depends on the data, by method.
-    pub rates: BTreeMap<String, Rates>,
+    pub rates: BTreeMap<String, PhaseRates>,
 }
 
 impl HostModel {
@@ -110,7 +110,7 @@ impl HostModel {
     /// # Errors
     /// [`OutOfRange::Length`] if they are not.
     pub(crate) fn admits(&self, n: usize) -> Result<(), OutOfRange> {
-        let Measured { shortest, longest, .. } = self.measured;
+        let MeasurementConditions { shortest, longest, .. } = self.measured;
         if n < shortest || n > longest {
             return Err(OutOfRange::Length { n, shortest, longest });
         }
@@ -143,7 +143,7 @@ impl HostModel {
         outlines: &Outlines,
         n: usize,
         execution: Execution,
-        around: &Around,
+        around: &StepArrays,
     ) -> Result<f64, OutOfRange> {
         if n == 0 {
             return Ok(0.0);
@@ -160,8 +160,8 @@ impl HostModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::host::Costs;
-    use stripmine_kernels::backend::tape::{Outline, Place, Reference};
+    use crate::model::host::ExecutionPrices;
+    use stripmine_kernels::backend::tape::{ArrayReference, Outline, VectorLocation};
     use stripmine_kernels::isa::{Array, Op};
 
     /// A host on which a pass takes 10 ns to start and 0.5 ns per element, a run 100 ns, a loop 7 ns, and a byte 0.25 or 0.125 ns.
@@ -169,11 +169,15 @@ mod tests {
         let of = LaneCosts {
             register_bytes: [8.0, 1.0, 4.0],
             lanes: 1,
-            interpreted: Costs::of(&[100.0, 10.0, 0.5, 0.0, 0.25]),
-            chained: Costs::of(&[7.0, 0.0, 0.375, 0.0, 0.125]),
+            interpreted: ExecutionPrices::of(&[100.0, 10.0, 0.5, 0.0, 0.25]),
+            chained: ExecutionPrices::of(&[7.0, 0.0, 0.375, 0.0, 0.125]),
         };
         HostModel {
-            measured: Measured { shortest: 8, longest: 1000, ..Measured::default() },
+            measured: MeasurementConditions {
+                shortest: 8,
+                longest: 1000,
+                ..MeasurementConditions::default()
+            },
             footprints: vec![64.0],
             programs: BTreeMap::from([("f64".to_owned(), of)]),
             ..HostModel::default()
@@ -182,7 +186,7 @@ mod tests {
 
     /// `count` passes that read one array.
     fn sums(count: usize) -> Outlines {
-        let x = Place::Memory(Reference { array: Array::X, element: "f64", shift: 0 });
+        let x = VectorLocation::Memory(ArrayReference { array: Array::X, element: "f64", shift: 0 });
         let pass = Outline { op: Op::Add, converts: false, reads: vec![x], writes: None };
         let all = vec![pass; count];
         Outlines { lane: "f64", instructions: all.clone(), passes: all, registers: [0; 3] }
@@ -191,7 +195,7 @@ mod tests {
     /// By hand: two passes over 100 elements at once, in strips of 32 with 4 in the last, and as a loop.
     #[test]
     fn program_time_sums_starts_operations_and_bytes() {
-        let around = Around::of_step(&[(&sums(1), 100)]);
+        let around = StepArrays::of_step(&[(&sums(1), 100)]);
         let ns = |execution| host().program(&sums(2), 100, execution, &around);
         let bytes = 0.25 * 2.0 * 800.0;
         assert_eq!(ns(Execution::Eager), Ok(100.0 + 2.0 * (10.0 + 50.0) + bytes));
@@ -207,7 +211,8 @@ mod tests {
     /// A single sample has no spread, whatever the load; a load above the free cores means that the machine is not quiet.
     #[test]
     fn machine_state_follows_from_the_measurements() {
-        let state = |seen: [Option<f64>; 2], load: Option<f64>| Measured::state_of(seen, load, 2);
+        let state =
+            |seen: [Option<f64>; 2], load: Option<f64>| MeasurementConditions::state_of(seen, load, 2);
         for (seen, load, begins, has) in [
             ([Some(0.01), Some(0.01)], Some(0.3), "quiet", ""),
             ([Some(0.01), Some(0.01)], None, "quiet", ""),

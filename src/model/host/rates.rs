@@ -25,18 +25,18 @@ pub(crate) struct Amounts {
 }
 
 /// One number for each of the [`Amounts`].
-pub(crate) type Units = [f64; 8];
+pub(crate) type AmountUnits = [f64; 8];
 
 impl Amounts {
     /// Amounts in the order of units.
-    pub(crate) fn values(&self) -> Units {
+    pub(crate) fn values(&self) -> AmountUnits {
         let Amounts { steps, discs, cells, candidates, contacts, makings, remade, relisted } = *self;
         [steps, discs, cells, candidates, contacts, makings, remade, relisted]
     }
 }
 
 /// Nanoseconds per unit in the phases of a method, by phase and precision.
-pub(crate) type Rates = BTreeMap<String, BTreeMap<String, Units>>;
+pub(crate) type PhaseRates = BTreeMap<String, BTreeMap<String, AmountUnits>>;
 
 /// Name of the part of the phase `index` that builds lists.
 pub(crate) const MAKING: &str = "making lists";
@@ -46,12 +46,12 @@ pub(crate) const MAKING: &str = "making lists";
 /// # Errors
 /// [`OutOfRange`] where the precision was not measured.
 pub(crate) fn phase(
-    rates: &Rates,
+    rates: &PhaseRates,
     phase: &str,
     precision: &str,
     amounts: &Amounts,
 ) -> Result<f64, OutOfRange> {
-    let of = |units: &BTreeMap<String, Units>| {
+    let of = |units: &BTreeMap<String, AmountUnits>| {
         let units = units.get(precision);
         let units = units.ok_or_else(|| OutOfRange::NotMeasured(format!("precision {precision}")))?;
         Ok(units.iter().zip(amounts.values()).map(|(unit, amount)| unit * amount).sum::<f64>())
@@ -66,10 +66,10 @@ mod tests {
 
     #[test]
     fn phase_time_includes_list_building() {
-        let of = |units: Units| BTreeMap::from([("f64".to_owned(), units)]);
+        let of = |units: AmountUnits| BTreeMap::from([("f64".to_owned(), units)]);
         let index = of([7.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let making = of([0.0, 0.0, 0.0, 0.0, 0.0, 100.0, 5.0, 0.0]);
-        let rates = Rates::from([("index".to_owned(), index), (MAKING.to_owned(), making)]);
+        let rates = PhaseRates::from([("index".to_owned(), index), (MAKING.to_owned(), making)]);
         let amounts =
             Amounts { steps: 1.0, discs: 1000.0, makings: 0.1, remade: 100.0, ..Amounts::default() };
         assert_eq!(phase(&rates, "index", "f64", &amounts), Ok(7.0 + 2000.0 + 10.0 + 500.0));

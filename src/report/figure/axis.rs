@@ -2,7 +2,7 @@
 
 use super::check::no_interval;
 use super::writer::escaped;
-use super::{Axis, Scale};
+use super::{ChartAxis, Scale};
 use libm::{log10, pow};
 use stripmine_physics::number::ten_to;
 
@@ -20,7 +20,7 @@ const PARTS: [f64; 6] = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
 
 /// Axis with its ends.
 #[derive(Clone, Debug)]
-pub(crate) struct Span {
+pub(crate) struct AxisRange {
     /// Quantity with its unit.
     pub heading: String,
     /// Scale of the axis.
@@ -30,17 +30,17 @@ pub(crate) struct Span {
 }
 
 /// Tick mark: position as a fraction of the axis, and label, empty for a small mark.
-pub(crate) type Mark = (f64, String);
+pub(crate) type TickMark = (f64, String);
 
-impl Span {
+impl AxisRange {
     /// Fits the ends of an axis to values, unless it has limits.
-    pub(super) fn new(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<Span, String> {
+    pub(super) fn new(axis: &ChartAxis, values: impl Iterator<Item = f64>) -> Result<AxisRange, String> {
         let ends = match (&axis.scale, axis.limits) {
             (Scale::Names(names), _) => [-0.5, names.len() as f64 - 0.5],
             (_, Some(limits)) => limits,
             _ => fitting(axis, values)?,
         };
-        Ok(Span { heading: axis.heading(), scale: axis.scale.clone(), ends })
+        Ok(AxisRange { heading: axis.heading(), scale: axis.scale.clone(), ends })
     }
 
     fn is_logarithmic(&self) -> bool {
@@ -77,7 +77,7 @@ impl Span {
     }
 
     /// Returns the marks of the axis with as many labels as fit. `room` returns the length that a label needs.
-    pub(crate) fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<Mark> {
+    pub(crate) fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<TickMark> {
         if let Scale::Names(names) = &self.scale {
             return (0..).zip(names).map(|(i, name)| (self.part(f64::from(i)), name.clone())).collect();
         }
@@ -87,12 +87,12 @@ impl Span {
             .filter(|_| self.is_logarithmic() && decades > FEWEST_DECADES)
             .map(|&stride| self.of_decades(stride));
         let steps = PARTS.iter().map(|&parts| self.of_steps(parts));
-        let fits = |marks: &Vec<Mark>| {
+        let fits = |marks: &Vec<TickMark>| {
             let labelled: Vec<_> = marks.iter().filter(|mark| !mark.1.is_empty()).collect();
-            let apart = |a: &Mark, b: &Mark| (b.0 - a.0) * length >= 0.5 * (room(&a.1) + room(&b.1));
+            let apart = |a: &TickMark, b: &TickMark| (b.0 - a.0) * length >= 0.5 * (room(&a.1) + room(&b.1));
             labelled.len() > 1 && labelled.windows(2).all(|pair| apart(pair[0], pair[1]))
         };
-        let inside = |mut marks: Vec<Mark>| {
+        let inside = |mut marks: Vec<TickMark>| {
             marks.retain(|(part, _)| (-1e-9..=1.0 + 1e-9).contains(part));
             marks
         };
@@ -100,7 +100,7 @@ impl Span {
     }
 
     /// Marks at 1 to 9 times powers of ten. Numbers are written in full only if all of them are short.
-    fn of_decades(&self, stride: i32) -> Vec<Mark> {
+    fn of_decades(&self, stride: i32) -> Vec<TickMark> {
         let [low, high] = self.ends.map(exponent);
         let mut marks = vec![];
         for raised in low..=high {
@@ -124,7 +124,7 @@ impl Span {
     }
 
     /// Marks at multiples of a power of ten over `parts`, with small marks in between.
-    fn of_steps(&self, parts: f64) -> Vec<Mark> {
+    fn of_steps(&self, parts: f64) -> Vec<TickMark> {
         let unit = pow(10.0, log10(self.ends[1] - self.ends[0]).floor()) / parts;
         let small = if [5.0, 0.5].contains(&parts) { 4.0 } else { 5.0 };
         let [first, last] = self.ends.map(|end| end / unit * small);
@@ -151,7 +151,7 @@ impl Span {
 }
 
 /// Returns the range of the data with a margin.
-fn fitting(axis: &Axis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], String> {
+fn fitting(axis: &ChartAxis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], String> {
     let is_logarithmic = axis.scale == Scale::Logarithmic;
     let [low, high] = values
         .map(|value| if is_logarithmic { log10(value) } else { value })
@@ -194,13 +194,13 @@ fn plain(number: f64) -> String {
 mod tests {
     use super::*;
 
-    fn axis(scale: Scale, limits: Option<[f64; 2]>) -> Axis {
-        Axis { scale, limits, ..Axis::linear("time", Some("s")) }
+    fn axis(scale: Scale, limits: Option<[f64; 2]>) -> ChartAxis {
+        ChartAxis { scale, limits, ..ChartAxis::linear("time", Some("s")) }
     }
 
     /// Labels of an axis with space for about six.
     fn labels(scale: Scale, limits: [f64; 2]) -> Vec<String> {
-        let span = Span::new(&axis(scale, Some(limits)), std::iter::empty()).unwrap();
+        let span = AxisRange::new(&axis(scale, Some(limits)), std::iter::empty()).unwrap();
         let marks = span.marks(6.0, |_| 1.0);
         assert!(marks.iter().all(|mark| (-1e-9..=1.0 + 1e-9).contains(&mark.0)));
         marks.into_iter().map(|mark| mark.1).filter(|label| !label.is_empty()).collect()
@@ -226,7 +226,8 @@ mod tests {
         assert_eq!(linear([0.0, 2.5e-9]), ["0", "0.5×10⁻⁹", "1×10⁻⁹", "1.5×10⁻⁹", "2×10⁻⁹", "2.5×10⁻⁹"]);
         assert_eq!(linear([0.0, 4e6]), ["0", "1×10⁶", "2×10⁶", "3×10⁶", "4×10⁶"]);
         let logarithmic = |limits| labels(Scale::Logarithmic, limits);
-        let short = Span::new(&axis(Scale::Logarithmic, Some([22.0, 380.0])), std::iter::empty()).unwrap();
+        let short =
+            AxisRange::new(&axis(Scale::Logarithmic, Some([22.0, 380.0])), std::iter::empty()).unwrap();
         let short = short.marks(3.0, |_| 1.0).into_iter().map(|mark| mark.1);
         assert_eq!(short.filter(|label| !label.is_empty()).collect::<Vec<_>>(), ["30", "100", "300"]);
         assert_eq!(logarithmic([0.01, 1e3]), ["0.01", "0.1", "1", "10", "100", "1000"]);
@@ -247,7 +248,7 @@ mod tests {
     /// A margin beyond 1e-305 and 1e305 would give 0 and infinity.
     #[test]
     fn fitted_ends_are_finite() {
-        let of = |scale, data: [f64; 2]| Span::new(&axis(scale, None), data.into_iter());
+        let of = |scale, data: [f64; 2]| AxisRange::new(&axis(scale, None), data.into_iter());
         let wide = of(Scale::Logarithmic, [1e-305, 1e305]).unwrap();
         assert!(wide.ends[0] > 0.0 && wide.ends[1].is_finite(), "{wide:?}");
         assert!(!wide.marks(10.0, |_| 1.0).is_empty());
@@ -261,9 +262,10 @@ mod tests {
 
     #[test]
     fn there_are_small_marks_between_numbers() {
-        let span = Span::new(&axis(Scale::Linear, Some([0.0, 1.0])), std::iter::empty()).unwrap();
+        let span = AxisRange::new(&axis(Scale::Linear, Some([0.0, 1.0])), std::iter::empty()).unwrap();
         assert_eq!(span.marks(6.0, |_| 1.0).len(), 21);
-        let span = Span::new(&axis(Scale::Logarithmic, Some([1.0, 1000.0])), std::iter::empty()).unwrap();
+        let span =
+            AxisRange::new(&axis(Scale::Logarithmic, Some([1.0, 1000.0])), std::iter::empty()).unwrap();
         assert_eq!(span.marks(3.0, |_| 1.0).len(), 28);
     }
 }

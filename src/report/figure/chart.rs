@@ -5,23 +5,27 @@ use serde::Deserialize;
 /// Chart. The coordinates of all points must be finite, and positive on a logarithmic axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
+    pub(crate) x: ChartAxis,
+    pub(crate) y: ChartAxis,
     /// In the order of the legend.
     pub(crate) series: Vec<Series>,
     /// Marked parts of the plane.
-    pub(crate) bands: Vec<Band>,
+    pub(crate) bands: Vec<ChartBand>,
 }
 
 impl Chart {
     /// Makes an empty chart over two axes.
-    pub fn of(x: Axis, y: Axis) -> Chart {
+    pub fn of(x: ChartAxis, y: ChartAxis) -> Chart {
         Chart { x, y, series: vec![], bands: vec![] }
     }
 
     /// Axis along which the spreads of points extend.
-    pub(super) fn spreads_along(&self) -> (&Axis, Along) {
-        if matches!(self.y.scale, Scale::Names(_)) { (&self.x, Along::X) } else { (&self.y, Along::Y) }
+    pub(super) fn spreads_along(&self) -> (&ChartAxis, AxisDirection) {
+        if matches!(self.y.scale, Scale::Names(_)) {
+            (&self.x, AxisDirection::X)
+        } else {
+            (&self.y, AxisDirection::Y)
+        }
     }
 
     /// Adds a series.
@@ -30,7 +34,7 @@ impl Chart {
         name: impl Into<String>,
         style: Style,
         hue: usize,
-        points: impl IntoIterator<Item = impl Into<Point>>,
+        points: impl IntoIterator<Item = impl Into<SeriesPoint>>,
     ) -> Chart {
         self.with([Series::new(name, style, hue, points)])
     }
@@ -42,7 +46,7 @@ impl Chart {
     }
 
     /// Marks a part of the plane.
-    pub(crate) fn band(mut self, band: Band) -> Chart {
+    pub(crate) fn band(mut self, band: ChartBand) -> Chart {
         self.bands.push(band);
         self
     }
@@ -50,32 +54,40 @@ impl Chart {
 
 /// Axis. Without limits it is fitted to the data.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct ChartAxis {
     pub(crate) label: String,
     pub(crate) unit: Option<String>,
     pub(crate) scale: Scale,
     pub(crate) limits: Option<[f64; 2]>,
 }
 
-impl Axis {
+impl ChartAxis {
     /// Makes a linear axis. Counts and ratios have no unit.
-    pub(crate) fn linear(label: &str, unit: Option<&str>) -> Axis {
-        Axis { label: label.to_owned(), unit: unit.map(str::to_owned), scale: Scale::Linear, limits: None }
+    pub(crate) fn linear(label: &str, unit: Option<&str>) -> ChartAxis {
+        ChartAxis {
+            label: label.to_owned(),
+            unit: unit.map(str::to_owned),
+            scale: Scale::Linear,
+            limits: None,
+        }
     }
 
     /// Makes a logarithmic axis.
-    pub fn logarithmic(label: &str, unit: Option<&str>) -> Axis {
-        Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
+    pub fn logarithmic(label: &str, unit: Option<&str>) -> ChartAxis {
+        ChartAxis { scale: Scale::Logarithmic, ..ChartAxis::linear(label, unit) }
     }
 
     /// Makes an axis of names; number 0 represents the first.
-    pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> Axis {
-        Axis { scale: Scale::Names(names.into_iter().map(Into::into).collect()), ..Axis::linear(label, None) }
+    pub fn names(label: &str, names: impl IntoIterator<Item = impl Into<String>>) -> ChartAxis {
+        ChartAxis {
+            scale: Scale::Names(names.into_iter().map(Into::into).collect()),
+            ..ChartAxis::linear(label, None)
+        }
     }
 
     /// Sets the limits.
-    pub(crate) fn between(self, ends: [f64; 2]) -> Axis {
-        Axis { limits: Some(ends), ..self }
+    pub(crate) fn between(self, ends: [f64; 2]) -> ChartAxis {
+        ChartAxis { limits: Some(ends), ..self }
     }
 
     /// Returns label and unit as one text.
@@ -102,7 +114,7 @@ pub(crate) struct Series {
     /// Index of a colour in the palette; related series share a hue.
     pub(crate) hue: usize,
     /// Points, by increasing x if they are joined.
-    pub(crate) points: Vec<Point>,
+    pub(crate) points: Vec<SeriesPoint>,
 }
 
 impl Series {
@@ -111,7 +123,7 @@ impl Series {
         name: impl Into<String>,
         style: Style,
         hue: usize,
-        points: impl IntoIterator<Item = impl Into<Point>>,
+        points: impl IntoIterator<Item = impl Into<SeriesPoint>>,
     ) -> Series {
         Series { name: name.into(), style, hue, points: points.into_iter().map(Into::into).collect() }
     }
@@ -136,28 +148,28 @@ pub enum Style {
 
 /// Point of a series. Its spread is the lowest and highest observed or credible value of y, or of x if the y axis has names.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct SeriesPoint {
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) spread: Option<[f64; 2]>,
 }
 
-impl Point {
+impl SeriesPoint {
     /// Makes a point without spread.
-    pub fn at(x: f64, y: f64) -> Point {
-        Point { x, y, spread: None }
+    pub fn at(x: f64, y: f64) -> SeriesPoint {
+        SeriesPoint { x, y, spread: None }
     }
 }
 
-impl From<(f64, f64)> for Point {
-    fn from((x, y): (f64, f64)) -> Point {
-        Point::at(x, y)
+impl From<(f64, f64)> for SeriesPoint {
+    fn from((x, y): (f64, f64)) -> SeriesPoint {
+        SeriesPoint::at(x, y)
     }
 }
 
-impl From<(f64, f64, [f64; 2])> for Point {
-    fn from((x, y, spread): (f64, f64, [f64; 2])) -> Point {
-        Point { x, y, spread: Some(spread) }
+impl From<(f64, f64, [f64; 2])> for SeriesPoint {
+    fn from((x, y, spread): (f64, f64, [f64; 2])) -> SeriesPoint {
+        SeriesPoint { x, y, spread: Some(spread) }
     }
 }
 
@@ -166,22 +178,22 @@ impl From<(f64, f64, [f64; 2])> for Point {
 /// Bands between values of x are grey, for instance unreachable densities; bands between values of y are light, for instance acceptable
 /// errors.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Band {
+pub(crate) struct ChartBand {
     pub(crate) label: String,
     /// Ends of the band; equal ends make a line.
     pub(crate) ends: [f64; 2],
-    pub(crate) along: Along,
+    pub(crate) along: AxisDirection,
 }
 
-impl Band {
+impl ChartBand {
     /// Marks the plane between two values of x.
-    pub(crate) fn of_x(label: &str, ends: [f64; 2]) -> Band {
-        Band { label: label.to_owned(), ends, along: Along::X }
+    pub(crate) fn of_x(label: &str, ends: [f64; 2]) -> ChartBand {
+        ChartBand { label: label.to_owned(), ends, along: AxisDirection::X }
     }
 
     /// Marks the plane between two values of y.
-    pub(crate) fn of_y(label: &str, ends: [f64; 2]) -> Band {
-        Band { along: Along::Y, ..Band::of_x(label, ends) }
+    pub(crate) fn of_y(label: &str, ends: [f64; 2]) -> ChartBand {
+        ChartBand { along: AxisDirection::Y, ..ChartBand::of_x(label, ends) }
     }
 
     /// Returns true if the band is a line.
@@ -192,7 +204,7 @@ impl Band {
 
 /// One of two axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Along {
+pub(crate) enum AxisDirection {
     X,
     Y,
 }

@@ -1,8 +1,8 @@
 //! Checks of figures before they are drawn.
 
-use super::{Axis, Chart, Drawing, Map, Picture, Scale, Shape, Tint};
+use super::{Chart, ChartAxis, Drawing, DrawnShape, HeatMap, Picture, Scale, Tint};
 use stripmine_physics::number::significant;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 
 /// Figure that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -16,8 +16,8 @@ pub struct FigureError {
 
 impl Reported for FigureError {
     // A figure that cannot be drawn is a bug of the program.
-    fn class(&self) -> Class {
-        Class::InputOutput
+    fn class(&self) -> ErrorClass {
+        ErrorClass::InputOutput
     }
 }
 
@@ -65,11 +65,11 @@ fn check_chart(chart: &Chart) -> Result<(), String> {
     has(series.iter().any(|series| !series.points.is_empty()))
 }
 
-fn check_map(map: &Map) -> Result<(), String> {
+fn check_map(map: &HeatMap) -> Result<(), String> {
     let columns = map.rows.first().map_or(0, Vec::len);
     has(columns > 0)?;
     for (axis, cells) in [(&map.x, columns), (&map.y, map.rows.len())] {
-        let Axis { label, scale, limits, .. } = axis;
+        let ChartAxis { label, scale, limits, .. } = axis;
         match scale {
             Scale::Names(names) if names.len() != cells => {
                 return Err(format!(
@@ -115,7 +115,7 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
     }
     for (i, shape) in shapes.iter().enumerate() {
         let place = || format!("a number of shape {i}");
-        if let Shape::Disc { tint: Tint::Shade(shade), .. } = shape {
+        if let DrawnShape::Disc { tint: Tint::Shade(shade), .. } = shape {
             finite(*shade, place)?;
         }
         for (value, low) in shape.extent().into_iter().flat_map(|corner| corner.into_iter().zip([left, low]))
@@ -134,7 +134,7 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
     has(!shapes.is_empty())
 }
 
-fn check_axis(axis: &Axis) -> Result<(), String> {
+fn check_axis(axis: &ChartAxis) -> Result<(), String> {
     let Some(limits) = axis.limits else { return Ok(()) };
     let place = format!("the axis `{}`", axis.label);
     limits.into_iter().try_for_each(|end| showable(axis, end, || format!("an end of {place}")))?;
@@ -156,7 +156,7 @@ pub(crate) fn no_interval(place: &str, ends: [f64; 2]) -> String {
     format!("{place} goes from {low} to {high}; expected increasing ends at a finite distance")
 }
 
-fn showable(axis: &Axis, value: f64, place: impl Fn() -> String) -> Result<(), String> {
+fn showable(axis: &ChartAxis, value: f64, place: impl Fn() -> String) -> Result<(), String> {
     finite(value, &place)?;
     let problem = match &axis.scale {
         Scale::Logarithmic if value <= 0.0 => "a logarithmic axis needs positive numbers".to_owned(),

@@ -1,14 +1,14 @@
 //! Numbers of a figure as a table, for programs.
 
-use super::{Axis, Chart, Figure, Map, Picture, Scale};
-use crate::report::{Cell, Table};
+use super::{Chart, ChartAxis, Figure, HeatMap, Picture, Scale};
+use crate::report::{FormattedTable, TableCell};
 
 /// Returns the table of a chart or a map, named after the figure; `None` for a drawing, whose shapes are not data, and for a picture read
 /// from a file.
 ///
 /// A chart gives one row for each point: series, x, y, and the ends of its spread, preceded by the name of the panel if there are several.
 /// A map gives one row for each of its rows from the bottom: the middle of the row, and its values under the middles of the columns.
-pub(crate) fn data(figure: &Figure) -> Option<Table> {
+pub(crate) fn data(figure: &Figure) -> Option<FormattedTable> {
     let (columns, rows) = match &figure.picture {
         Picture::Charts(panels) => {
             let (mut columns, rows) =
@@ -17,8 +17,8 @@ pub(crate) fn data(figure: &Figure) -> Option<Table> {
                 (columns, rows.flatten().collect())
             } else {
                 columns.insert(0, "panel".to_owned());
-                let named = |(row, (name, _)): (Vec<Vec<Cell>>, &(String, Chart))| {
-                    let name = Cell::Text(name.clone());
+                let named = |(row, (name, _)): (Vec<Vec<TableCell>>, &(String, Chart))| {
+                    let name = TableCell::Text(name.clone());
                     row.into_iter().map(|cells| [vec![name.clone()], cells].concat()).collect::<Vec<_>>()
                 };
                 (columns, rows.zip(panels).flat_map(named).collect())
@@ -27,7 +27,13 @@ pub(crate) fn data(figure: &Figure) -> Option<Table> {
         Picture::Map(map) => cells(map),
         Picture::Drawing(_) | Picture::Drawn { .. } => return None,
     };
-    Some(Table { name: data_name(figure), title: figure.title.clone(), columns, rows, notes: vec![] })
+    Some(FormattedTable {
+        name: data_name(figure),
+        title: figure.title.clone(),
+        columns,
+        rows,
+        notes: vec![],
+    })
 }
 
 fn data_name(figure: &Figure) -> String {
@@ -44,14 +50,16 @@ pub(crate) fn data_file(figure: &Figure) -> Option<String> {
     has_data.then(|| format!("{}.csv", data_name(figure)))
 }
 
-fn number(value: f64) -> Cell {
-    if value.is_finite() { Cell::Number(value, 6) } else { Cell::Nothing }
+fn number(value: f64) -> TableCell {
+    if value.is_finite() { TableCell::Number(value, 6) } else { TableCell::Nothing }
 }
 
 /// Returns the number, or the name that it represents on an axis of names.
-fn place(axis: &Axis, value: f64) -> Cell {
+fn place(axis: &ChartAxis, value: f64) -> TableCell {
     match &axis.scale {
-        Scale::Names(names) => names.get(value.round() as usize).cloned().map_or(Cell::Nothing, Cell::Text),
+        Scale::Names(names) => {
+            names.get(value.round() as usize).cloned().map_or(TableCell::Nothing, TableCell::Text)
+        }
         _ => number(value),
     }
 }
@@ -60,18 +68,19 @@ fn headings(Chart { x, y, .. }: &Chart) -> Vec<String> {
     ["series".to_owned(), x.heading(), y.heading(), "lowest".to_owned(), "highest".to_owned()].to_vec()
 }
 
-fn points(Chart { x, y, series, .. }: &Chart) -> Vec<Vec<Cell>> {
+fn points(Chart { x, y, series, .. }: &Chart) -> Vec<Vec<TableCell>> {
     let rows = series.iter().flat_map(|series| {
         series.points.iter().map(|point| {
-            let [low, high] = point.spread.map_or([Cell::Nothing, Cell::Nothing], |ends| ends.map(number));
-            vec![Cell::Text(series.name.clone()), place(x, point.x), place(y, point.y), low, high]
+            let [low, high] =
+                point.spread.map_or([TableCell::Nothing, TableCell::Nothing], |ends| ends.map(number));
+            vec![TableCell::Text(series.name.clone()), place(x, point.x), place(y, point.y), low, high]
         })
     });
     rows.collect()
 }
 
-fn cells(Map { x, y, value, rows }: &Map) -> (Vec<String>, Vec<Vec<Cell>>) {
-    let middle = |axis: &Axis, at: usize, count: usize| {
+fn cells(HeatMap { x, y, value, rows }: &HeatMap) -> (Vec<String>, Vec<Vec<TableCell>>) {
+    let middle = |axis: &ChartAxis, at: usize, count: usize| {
         let [low, high] = axis.limits.unwrap_or([0.0, count as f64]);
         let part = (at as f64 + 0.5) / count as f64;
         match axis.scale {
@@ -118,26 +127,28 @@ mod tests {
 
     #[test]
     fn a_map_names_the_middles_of_its_cells() {
-        let axis = |label| Axis::linear(label, Some("m")).between([0.0, 4.0]);
+        let axis = |label| ChartAxis::linear(label, Some("m")).between([0.0, 4.0]);
         let rows = vec![vec![1.0, 2.0], vec![3.0, f64::NAN]];
-        let map = Map { x: axis("x"), y: axis("y"), value: axis("depth"), rows };
+        let map = HeatMap { x: axis("x"), y: axis("y"), value: axis("depth"), rows };
         let (columns, rows) = cells(&map);
         assert_eq!(columns, ["depth (m) by y (m) down, x (m) across", "1", "3"]);
-        assert_eq!(rows[1], [Cell::Number(3.0, 6), Cell::Number(3.0, 6), Cell::Nothing]);
-        let (x, y) =
-            (Axis::names("search", ["lists", "lattice"]), Axis::logarithmic("n", None).between([1.0, 1e4]));
-        let (columns, rows) = cells(&Map { x, y, ..map });
+        assert_eq!(rows[1], [TableCell::Number(3.0, 6), TableCell::Number(3.0, 6), TableCell::Nothing]);
+        let (x, y) = (
+            ChartAxis::names("search", ["lists", "lattice"]),
+            ChartAxis::logarithmic("n", None).between([1.0, 1e4]),
+        );
+        let (columns, rows) = cells(&HeatMap { x, y, ..map });
         assert_eq!(columns[1..], ["lists", "lattice"]);
-        assert_eq!(rows[1][0], Cell::Number(1000.0, 6));
+        assert_eq!(rows[1][0], TableCell::Number(1000.0, 6));
     }
 
     #[test]
     fn panels_and_names_are_columns_of_words() {
         let words = |figure: &Figure, row: usize| data(figure).unwrap().rows[row][..3].to_vec();
         let row = words(&samples::panels(), 0);
-        assert!(matches!(&row[0], Cell::Text(panel) if panel == "5×5"), "{row:?}");
+        assert!(matches!(&row[0], TableCell::Text(panel) if panel == "5×5"), "{row:?}");
         let row = words(&samples::names(), 1);
-        assert!(matches!(&row[1], Cell::Text(name) if name == "dense-gas"), "{row:?}");
+        assert!(matches!(&row[1], TableCell::Text(name) if name == "dense-gas"), "{row:?}");
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Drawings: shapes with a scale bar, the direction of gravity and a colour bar below them.
 
-use super::axis::Span;
+use super::axis::AxisRange;
 use super::style::{self, Colour, LINE};
 use super::writer::{END, MIDDLE, Svg, at, stroke, tenths};
-use super::{Drawing, Guide, Scale, Shape, Tint, font, map};
+use super::{Drawing, DrawnShape, Guide, Scale, Tint, font, map};
 use std::collections::BTreeMap;
 use stripmine_physics::number::significant;
 
@@ -26,7 +26,7 @@ pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     let mut svg = Svg::new(title, drawing.width, zoom);
     let top = svg.size[1];
     let is_signed = drawing.shades.as_ref().is_some_and(|&(low, high, _)| style::is_signed([low, high]));
-    let view = View { drawing, corner: [margin, top + height], scale, zoom, is_signed };
+    let view = DrawingView { drawing, corner: [margin, top + height], scale, zoom, is_signed };
     // Outlines at the edges are not cut off.
     let (corner, size) =
         ([margin, top].map(|it| it - 0.5 * LINE * zoom), [width, height].map(|it| it + LINE * zoom));
@@ -40,13 +40,13 @@ pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     if let Some((lowest, highest, what)) = &drawing.shades {
         let (heading, ends) = (what.clone(), [*lowest, *highest]);
         svg.size[1] -= 0.5 * margin;
-        map::bar(&mut svg, &Span { heading, scale: Scale::Linear, ends }, zoom);
+        map::bar(&mut svg, &AxisRange { heading, scale: Scale::Linear, ends }, zoom);
     }
     svg
 }
 
 /// View of a drawing on a picture.
-struct View<'a> {
+struct DrawingView<'a> {
     drawing: &'a Drawing,
     /// Position of the window's lower left corner.
     corner: [f64; 2],
@@ -57,10 +57,11 @@ struct View<'a> {
     is_signed: bool,
 }
 
-impl View<'_> {
+impl DrawingView<'_> {
     /// Adds the shapes from back to front; consecutive filled discs are drawn together.
     fn shapes(&self, svg: &mut Svg) {
-        let is_dot = |shape: &Shape| matches!(shape, Shape::Disc { tint, .. } if *tint != Tint::Clear);
+        let is_dot =
+            |shape: &DrawnShape| matches!(shape, DrawnShape::Disc { tint, .. } if *tint != Tint::Clear);
         let mut before = 0;
         for alike in self.drawing.shapes.chunk_by(|a, b| is_dot(a) && is_dot(b)) {
             match &alike[0] {
@@ -75,24 +76,24 @@ impl View<'_> {
         stroke(style::INK, LINE * self.zoom)
     }
 
-    fn shape(&self, svg: &mut Svg, shape: &Shape, below: &[Shape]) {
+    fn shape(&self, svg: &mut Svg, shape: &DrawnShape, below: &[DrawnShape]) {
         match shape {
-            Shape::Disc { centre, radius, .. } => {
+            DrawnShape::Disc { centre, radius, .. } => {
                 let ([x, y], radius) = (self.place(*centre).map(tenths), radius.abs() * self.scale);
                 let (r, stroke) = (tenths(radius), stroke(style::INK, self.rim(radius)));
                 svg.add(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" fill=\"none\"{stroke}/>"));
             }
-            Shape::Rectangle { corners, tint } => {
+            DrawnShape::Rectangle { corners, tint } => {
                 let [[left, bottom], [right, top]] = corners.map(|corner| self.place(corner));
                 let place = at([left, top], [right - left, bottom - top]);
                 let fill = self.colour(*tint).map_or("none".to_owned(), |colour| colour.to_string());
                 svg.add(format_args!("<rect{place} fill=\"{fill}\"{}/>", self.ink()));
             }
-            Shape::Line { ends } => {
+            DrawnShape::Line { ends } => {
                 let [[x1, y1], [x2, y2]] = ends.map(|end| self.place(end).map(tenths));
                 svg.path(&self.ink(), &format!("M{x1} {y1}L{x2} {y2}"));
             }
-            Shape::Text { centre, height, words } => {
+            DrawnShape::Text { centre, height, words } => {
                 let covers = |[low, high]: [[f64; 2]; 2]| {
                     (0..2).all(|side| (low[side]..=high[side]).contains(&centre[side]))
                 };
@@ -109,12 +110,12 @@ impl View<'_> {
 
     /// Adds filled discs, whose order does not matter. Discs of one colour and size are drawn as very short lines with round ends, in a sixth
     /// of the bytes of circles; outlines are larger discs behind all of them.
-    fn dots(&self, svg: &mut Svg, discs: &[Shape]) {
+    fn dots(&self, svg: &mut Svg, discs: &[DrawnShape]) {
         // Centres (tenths of a pixel) by layer, colour and diameter; outlines first.
         let mut alike: BTreeMap<(bool, Colour, i64), Vec<[i64; 2]>> = BTreeMap::new();
         let tenths = |pixels: f64| (10.0 * pixels).round() as i64;
         for shape in discs {
-            let Shape::Disc { centre, radius, tint } = shape else { continue };
+            let DrawnShape::Disc { centre, radius, tint } = shape else { continue };
             let (Some(fill), radius) = (self.colour(*tint), radius.abs() * self.scale) else { continue };
             let middle = self.place(*centre).map(tenths);
             let mut dot = |is_front, colour, diameter: f64| {
@@ -190,9 +191,9 @@ impl View<'_> {
         }
     }
 
-    fn filling(&self, shape: &Shape) -> Option<Colour> {
+    fn filling(&self, shape: &DrawnShape) -> Option<Colour> {
         match shape {
-            Shape::Disc { tint, .. } | Shape::Rectangle { tint, .. } => self.colour(*tint),
+            DrawnShape::Disc { tint, .. } | DrawnShape::Rectangle { tint, .. } => self.colour(*tint),
             _ => None,
         }
     }

@@ -1,10 +1,10 @@
 //! Heat maps and colour bars.
 
-use super::axis::Span;
+use super::axis::AxisRange;
 use super::plane::{self, Plane};
 use super::style;
 use super::writer::{MIDDLE, Svg, at, escaped, stroke, tenths};
-use super::{Axis, Map, Scale, font};
+use super::{ChartAxis, HeatMap, Scale, font};
 use std::collections::BTreeSet;
 use stripmine_physics::number::{in_tens, significant};
 
@@ -14,8 +14,8 @@ const THICKNESS: f64 = 16.0;
 /// Significant digits of a value in its cell.
 const DIGITS: usize = 2;
 
-pub(crate) fn draw(title: &str, map: &Map) -> Result<Svg, String> {
-    let [x, y] = [&map.x, &map.y].map(|axis| Span::new(axis, std::iter::empty()));
+pub(crate) fn draw(title: &str, map: &HeatMap) -> Result<Svg, String> {
+    let [x, y] = [&map.x, &map.y].map(|axis| AxisRange::new(axis, std::iter::empty()));
     let (x, y) = (x?, y?);
     let shades = shades(&map.value, map.rows.iter().flatten().copied().filter(|value| !value.is_nan()))?;
     let mut svg = Svg::new(title, style::WIDTH, 1.0);
@@ -29,25 +29,29 @@ pub(crate) fn draw(title: &str, map: &Map) -> Result<Svg, String> {
 }
 
 /// Returns the axis of the shades; without limits it spans exactly the values of the map.
-fn shades(axis: &Axis, values: impl Iterator<Item = f64> + Clone) -> Result<Span, String> {
+fn shades(axis: &ChartAxis, values: impl Iterator<Item = f64> + Clone) -> Result<AxisRange, String> {
     let [low, high] = [f64::min, f64::max].map(|it| values.clone().reduce(it).unwrap_or(f64::NAN));
     let is_exact = axis.limits.is_none() && low < high;
-    if is_exact { Span::new(&axis.clone().between([low, high]), values) } else { Span::new(axis, values) }
+    if is_exact {
+        AxisRange::new(&axis.clone().between([low, high]), values)
+    } else {
+        AxisRange::new(axis, values)
+    }
 }
 
 /// Returns true if shades show a sign.
-fn is_signed(shades: &Span) -> bool {
+fn is_signed(shades: &AxisRange) -> bool {
     shades.scale == Scale::Linear && style::is_signed(shades.ends)
 }
 
-fn level(shades: &Span, value: f64) -> u8 {
+fn level(shades: &AxisRange, value: f64) -> u8 {
     style::level(shades.part(value), is_signed(shades))
 }
 
 /// Adds the cells of a map in units of cells. Cells of one colour are one path; adjacent cells in a row are one line as wide as a cell is
 /// high. A line continues under cells of higher levels, which are painted later; this saves a fifth of the lines. Edges are not antialiased,
 /// which would show as seams.
-fn cells(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
+fn cells(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
     // Rows from the top; 1 is the lowest level, 0 an empty cell.
     let level = |&value: &f64| if value.is_nan() { 0 } else { 1 + u32::from(level(shades, value)) };
     let rows: Vec<Vec<u32>> = map.rows.iter().rev().map(|row| row.iter().map(level).collect()).collect();
@@ -83,7 +87,7 @@ fn cells(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
 }
 
 /// Adds the values of a map if they fit into its cells.
-fn numbers(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
+fn numbers(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
     let text = |value: &f64| {
         if value.is_nan() { String::new() } else { in_tens(*value, DIGITS).replace('-', "−") }
     };
@@ -105,7 +109,7 @@ fn numbers(svg: &mut Svg, map: &Map, shades: &Span, plane: &Plane) {
 }
 
 /// Adds a colour bar below a picture, with a heading and tick marks; a short bar shows its ends and middle.
-pub(crate) fn bar(svg: &mut Svg, shades: &Span, zoom: f64) {
+pub(crate) fn bar(svg: &mut Svg, shades: &AxisRange, zoom: f64) {
     let [picture, top] = svg.size;
     let (size, margin, is_signed) = (style::LABEL * zoom, style::MARGIN * zoom, is_signed(shades));
     // Numbers at the ends extend beyond the bar.

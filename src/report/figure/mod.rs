@@ -17,13 +17,13 @@ pub(crate) mod style;
 mod tests;
 mod writer;
 
-pub(crate) use chart::Band;
-pub(crate) use chart::{Along, Scale, Series};
-pub use chart::{Axis, Chart, Point, Style};
+pub(crate) use chart::ChartBand;
+pub(crate) use chart::{AxisDirection, Scale, Series};
+pub use chart::{Chart, ChartAxis, SeriesPoint, Style};
 pub use check::FigureError;
 pub(crate) use data::{data, data_file};
 pub(crate) use output::png;
 pub use output::svg;
 pub use picture::Figure;
-pub(crate) use picture::{Drawing, Map, Picture};
-pub(crate) use picture::{Guide, Shape, Tint};
+pub(crate) use picture::{Drawing, HeatMap, Picture};
+pub(crate) use picture::{DrawnShape, Guide, Tint};

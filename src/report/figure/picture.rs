@@ -1,6 +1,6 @@
 //! Pictures with their names, titles and captions.
 
-use super::chart::{Axis, Chart};
+use super::chart::{Chart, ChartAxis};
 
 /// Picture with a name for files, a title and a caption.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub(crate) enum Picture {
     /// Curves and points over two axes: one chart without a name, or several side by side with the same axes and one legend.
     Charts(Vec<(String, Chart)>),
     /// Heat map: a colour for the value of each cell of a grid.
-    Map(Map),
+    Map(HeatMap),
     /// Drawing of discs, cells and words.
     Drawing(Drawing),
     /// Picture read from a file.
@@ -82,11 +82,11 @@ impl Figure {
 ///
 /// The limits of its axes are the outer edges of the outermost cells; an axis of names needs no limits.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Map {
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
+pub(crate) struct HeatMap {
+    pub(crate) x: ChartAxis,
+    pub(crate) y: ChartAxis,
     /// Quantity shown by colours.
-    pub(crate) value: Axis,
+    pub(crate) value: ChartAxis,
     /// `rows[j][i]`: value in row j (from the bottom) and column i. All rows have the same length. NaN leaves a cell empty.
     pub(crate) rows: Vec<Vec<f64>>,
 }
@@ -99,7 +99,7 @@ pub(crate) struct Drawing {
     /// Width of the picture (pixels); its height follows from the window.
     pub(crate) width: f64,
     /// Shapes from back to front. An item stores the picture, not the shapes.
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Vec<DrawnShape>,
     /// Lowest and highest value of the shades, and their quantity with its unit; `None` if shades have no meaning.
     pub(crate) shades: Option<(f64, f64, String)>,
     /// Scale bar and gravity below the drawing; `None` if the coordinates have no unit.
@@ -115,7 +115,7 @@ pub(crate) struct Guide {
 
 /// Shape of a drawing.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Shape {
+pub(crate) enum DrawnShape {
     Disc {
         centre: [f64; 2],
         radius: f64,
@@ -137,15 +137,15 @@ pub(crate) enum Shape {
     },
 }
 
-impl Shape {
+impl DrawnShape {
     /// Opposite corners of the bounding box.
     pub(super) fn extent(&self) -> [[f64; 2]; 2] {
         match *self {
-            Shape::Disc { centre: [x, y], radius: most, .. }
-            | Shape::Text { centre: [x, y], height: most, .. } => {
+            DrawnShape::Disc { centre: [x, y], radius: most, .. }
+            | DrawnShape::Text { centre: [x, y], height: most, .. } => {
                 [[x - most, y - most], [x + most, y + most]]
             }
-            Shape::Rectangle { corners: ends, .. } | Shape::Line { ends } => ends,
+            DrawnShape::Rectangle { corners: ends, .. } | DrawnShape::Line { ends } => ends,
         }
     }
 }

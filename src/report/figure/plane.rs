@@ -1,6 +1,6 @@
 //! Planes between two axes, one or several side by side, with tick marks and headings.
 
-use super::axis::{Mark, Span};
+use super::axis::{AxisRange, TickMark};
 use super::writer::{END, MIDDLE, Svg, at, stroke, tenths};
 use super::{Scale, font, style};
 
@@ -16,9 +16,9 @@ const LINE: f64 = style::LABEL * style::LINE_SPACING;
 /// Plane between two axes.
 pub(crate) struct Plane {
     /// Horizontal axis.
-    pub x: Span,
+    pub x: AxisRange,
     /// Vertical axis.
-    pub y: Span,
+    pub y: AxisRange,
     /// Upper left corner (pixels).
     pub corner: [f64; 2],
     /// Width and height (pixels).
@@ -43,7 +43,7 @@ impl Plane {
     }
 
     /// Adds frame, grid and marks, and the labels of the axes in `shows`.
-    fn axes(&self, svg: &mut Svg, [x_marks, y_marks]: [&[Mark]; 2], shows: [bool; 2], is_turned: bool) {
+    fn axes(&self, svg: &mut Svg, [x_marks, y_marks]: [&[TickMark]; 2], shows: [bool; 2], is_turned: bool) {
         let ([left, top], [width, height], size) = (self.corner, self.size, style::LABEL);
         let (bottom, right, half) = (top + height, left + width, 0.5 * size * font::CAPITAL);
         let [mut grid, mut marks] = [String::new(), String::new()];
@@ -79,7 +79,7 @@ impl Plane {
 }
 
 /// Words above a plane: its name, possibly empty, and labels with their positions as fractions of the x axis.
-pub(crate) type Head<'a> = (&'a str, Vec<(f64, &'a str)>);
+pub(crate) type PlaneHead<'a> = (&'a str, Vec<(f64, &'a str)>);
 
 /// Places labels above a plane of a width without overlaps: row from below, middle and words of each.
 fn rows<'a>(labels: &[(f64, &'a str)], width: f64) -> Vec<(usize, f64, &'a str)> {
@@ -96,7 +96,7 @@ fn rows<'a>(labels: &[(f64, &'a str)], width: f64) -> Vec<(usize, f64, &'a str)>
 }
 
 /// Draws axes for a plane below each head, starting at the present height of the picture.
-pub(crate) fn draw(svg: &mut Svg, x: &Span, y: &Span, heads: &[Head]) -> Vec<Plane> {
+pub(crate) fn draw(svg: &mut Svg, x: &AxisRange, y: &AxisRange, heads: &[PlaneHead]) -> Vec<Plane> {
     let size = style::LABEL;
     let columns = [1, 1, 2, 3, 2].get(heads.len()).copied().unwrap_or(3);
     let height = match &y.scale {
@@ -104,7 +104,7 @@ pub(crate) fn draw(svg: &mut Svg, x: &Span, y: &Span, heads: &[Head]) -> Vec<Pla
         _ => [style::PLOT_HEIGHT, 230.0, 180.0][columns - 1],
     };
     let y_marks = y.marks(height, |_| 2.0 * LINE);
-    let widest = |marks: &[Mark]| font::widest(marks.iter().map(|mark| &mark.1), size);
+    let widest = |marks: &[TickMark]| font::widest(marks.iter().map(|mark| &mark.1), size);
     let heading = font::wrap(&y.heading, size, height.max(style::PLOT_HEIGHT));
     // Planes are aligned to whole pixels.
     let left = style::MARGIN + LINE * heading.len() as f64 + widest(&y_marks) + TO_LABEL + MARK + TO_LABEL;

@@ -1,10 +1,10 @@
 //! Charts, one or several side by side.
 
-use super::axis::Span;
-use super::plane::{self, Head, Plane};
-use super::style::{self, Colour, Look};
+use super::axis::AxisRange;
+use super::plane::{self, Plane, PlaneHead};
+use super::style::{self, Colour, SeriesLook};
 use super::writer::{Svg, at};
-use super::{Along, Axis, Band, Chart, Scale, Series, font, series};
+use super::{AxisDirection, Chart, ChartAxis, ChartBand, Scale, Series, font, series};
 
 /// Width of a line marking a value (pixels).
 const LINE: f64 = 1.6;
@@ -19,12 +19,12 @@ const BETWEEN: f64 = 9.0;
 pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, String> {
     let charts = || panels.iter().map(|panel| &panel.1);
     // Values along an axis: points, their spreads and the ends of bands.
-    let values = |along: Along, axis: &Axis| {
+    let values = |along: AxisDirection, axis: &ChartAxis| {
         let mut all = vec![];
         for chart in charts() {
             let spreads = chart.spreads_along().1 == along;
             for point in chart.series.iter().flat_map(|series| &series.points) {
-                all.push(if along == Along::X { point.x } else { point.y });
+                all.push(if along == AxisDirection::X { point.x } else { point.y });
                 all.extend(point.spread.filter(|_| spreads).into_iter().flatten());
             }
             let ends = chart.bands.iter().filter(|band| band.along == along).flat_map(|band| band.ends);
@@ -35,7 +35,8 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
         all.into_iter()
     };
     let [x, y] = panels.first().map(|(_, chart)| [&chart.x, &chart.y]).ok_or("there are no panels")?;
-    let (x, y) = (Span::new(x, values(Along::X, x))?, Span::new(y, values(Along::Y, y))?);
+    let (x, y) =
+        (AxisRange::new(x, values(AxisDirection::X, x))?, AxisRange::new(y, values(AxisDirection::Y, y))?);
 
     // A series in several panels has one look and one legend entry.
     let (mut all, mut of_panels) = (Vec::<&Series>::new(), vec![]);
@@ -51,7 +52,8 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
     }
     let looks = style::looks(&all);
     let mut svg = Svg::new(title, style::WIDTH, 1.0);
-    let heads: Vec<Head> = panels.iter().map(|(name, chart)| (name.as_str(), labels(chart, &x))).collect();
+    let heads: Vec<PlaneHead> =
+        panels.iter().map(|(name, chart)| (name.as_str(), labels(chart, &x))).collect();
     let planes = plane::draw(&mut svg, &x, &y, &heads);
     for ((plane, chart), seen) in planes.iter().zip(charts()).zip(&of_panels) {
         plane.fill(&mut svg, "", |svg| {
@@ -62,14 +64,14 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
             }
         });
     }
-    let of_series = all.iter().zip(looks).map(|(series, look)| (&series.name, Sample::Series(look)));
-    let mut entries: Vec<(&String, Sample)> = of_series.collect();
+    let of_series = all.iter().zip(looks).map(|(series, look)| (&series.name, LegendSample::Series(look)));
+    let mut entries: Vec<(&String, LegendSample)> = of_series.collect();
     for (band, colour) in charts().flat_map(bands) {
-        let has_label = band.is_line() && band.along == Along::X;
+        let has_label = band.is_line() && band.along == AxisDirection::X;
         if !has_label && !entries.iter().any(|(words, _)| **words == band.label) {
             entries.push((
                 &band.label,
-                Sample::Ground(colour, if band.is_line() { LINE } else { series::GROUND }),
+                LegendSample::Ground(colour, if band.is_line() { LINE } else { series::GROUND }),
             ));
         }
     }
@@ -80,8 +82,8 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
 }
 
 /// Returns the labels of a chart's vertical lines with their positions, from the left.
-fn labels<'a>(chart: &'a Chart, x: &Span) -> Vec<(f64, &'a str)> {
-    let lines = chart.bands.iter().filter(|band| band.along == Along::X && band.is_line());
+fn labels<'a>(chart: &'a Chart, x: &AxisRange) -> Vec<(f64, &'a str)> {
+    let lines = chart.bands.iter().filter(|band| band.along == AxisDirection::X && band.is_line());
     let placed = lines.map(|band| (x.part(band.ends[0]), band.label.as_str()));
     let mut labels: Vec<_> = placed.filter(|(part, _)| (0.0..=1.0).contains(part)).collect();
     labels.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -89,12 +91,12 @@ fn labels<'a>(chart: &'a Chart, x: &Span) -> Vec<(f64, &'a str)> {
 }
 
 /// Returns the bands of a chart with their colours. Bands along y overlap, and the first is the lightest.
-fn bands(chart: &Chart) -> impl Iterator<Item = (&Band, Colour)> {
+fn bands(chart: &Chart) -> impl Iterator<Item = (&ChartBand, Colour)> {
     let mut before = 0;
     chart.bands.iter().map(move |band| match band.along {
         _ if band.is_line() => (band, style::MARK),
-        Along::X => (band, style::STILL),
-        Along::Y => {
+        AxisDirection::X => (band, style::STILL),
+        AxisDirection::Y => {
             before += 1;
             (band, style::GROUNDS[(before - 1).min(style::GROUNDS.len() - 1)])
         }
@@ -102,18 +104,18 @@ fn bands(chart: &Chart) -> impl Iterator<Item = (&Band, Colour)> {
 }
 
 /// Adds the visible part of a band, with its label.
-fn area(svg: &mut Svg, plane: &Plane, band: &Band, colour: Colour) {
-    let axis = if band.along == Along::X { &plane.x } else { &plane.y };
+fn area(svg: &mut Svg, plane: &Plane, band: &ChartBand, colour: Colour) {
+    let axis = if band.along == AxisDirection::X { &plane.x } else { &plane.y };
     let ([left, top], [width, height]) = (plane.corner, plane.size);
-    let length = if band.along == Along::X { width } else { height };
+    let length = if band.along == AxisDirection::X { width } else { height };
     let mut ends = band.ends.map(|end| axis.part(end) * length);
     if band.is_line() {
         ends = [ends[0] - 0.5 * LINE, ends[0] + 0.5 * LINE];
     }
     let [from, to] = ends.map(|end| end.clamp(0.0, length));
     let (corner, size) = match band.along {
-        Along::X => ([left + from, top], [to - from, height]),
-        Along::Y => ([left, top + height - to], [width, to - from]),
+        AxisDirection::X => ([left + from, top], [to - from, height]),
+        AxisDirection::Y => ([left, top + height - to], [width, to - from]),
     };
     if from < to {
         svg.named(&band.label, |svg| svg.add(format_args!("<rect{} fill=\"{colour}\"/>", at(corner, size))));
@@ -121,15 +123,15 @@ fn area(svg: &mut Svg, plane: &Plane, band: &Band, colour: Colour) {
 }
 
 /// Legend sample.
-enum Sample {
+enum LegendSample {
     /// Curve or markers.
-    Series(Look),
+    Series(SeriesLook),
     /// Shaded area of a height (pixels).
     Ground(Colour, f64),
 }
 
 /// Adds a legend below a picture, in as many columns as the words allow.
-fn legend(svg: &mut Svg, entries: &[(&String, Sample)]) {
+fn legend(svg: &mut Svg, entries: &[(&String, LegendSample)]) {
     let width = svg.size[0] - 2.0 * style::MARGIN + BESIDE;
     let wrapped = |columns: usize| {
         let most = width / columns as f64 - LENGTH - TO_WORDS - BESIDE;
@@ -149,8 +151,8 @@ fn legend(svg: &mut Svg, entries: &[(&String, Sample)]) {
             let left = style::MARGIN + width / columns as f64 * i as f64;
             let middle = top + 0.5 * style::LABEL * font::CAPITAL;
             match &entry.1 {
-                Sample::Series(look) => series::sample(svg, look, [left, middle], LENGTH),
-                Sample::Ground(colour, height) => {
+                LegendSample::Series(look) => series::sample(svg, look, [left, middle], LENGTH),
+                LegendSample::Ground(colour, height) => {
                     let place = at([left, middle - 0.5 * height], [LENGTH, *height]);
                     svg.add(format_args!("<rect{place} fill=\"{colour}\"/>"));
                 }

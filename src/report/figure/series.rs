@@ -1,9 +1,9 @@
 //! Series on a plane: curves, error bars and markers, and their samples in a legend.
 
 use super::plane::Plane;
-use super::style::{CURVE, Look, MARKERS, PAPER, has_markers, is_scattered};
+use super::style::{CURVE, MARKERS, PAPER, SeriesLook, has_markers, is_scattered};
 use super::writer::{Svg, bends, stroke, tenths, through};
-use super::{Point, Scale, Series, Style};
+use super::{Scale, Series, SeriesPoint, Style};
 
 /// Size ratio of large marks to points.
 const LARGE: &str = "1.8";
@@ -13,7 +13,7 @@ const CAP: f64 = 4.5;
 pub(crate) const GROUND: f64 = 15.0;
 
 /// Adds the shaded area between the ends of the spreads of a ribbon.
-pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
     let end = |which: usize| {
         let ends = series.points.iter().filter_map(move |it| Some((it.x, it.spread?[which])));
         ends.map(|(x, y)| plane.place(x, y))
@@ -25,7 +25,7 @@ pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series)
 }
 
 /// Adds the curve of a series, if it has one. The curve carries the series' name if there are no markers.
-pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
     if is_scattered(look.style) || series.points.len() < 2 {
         return;
     }
@@ -39,9 +39,9 @@ pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) 
 }
 
 /// Adds the error bars and markers of a series, with its name. A single point always has a marker, and no marker is cut off.
-pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series) {
+pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
     let mut bars = String::new();
-    for &Point { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
+    for &SeriesPoint { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
         let (Some(ends), cap) = (spread, 2.0 * CAP) else { continue };
         if matches!(plane.y.scale, Scale::Names(_)) {
             let [[left, up], [right, _]] = ends.map(|end| plane.place(end, y));
@@ -51,8 +51,9 @@ pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series)
             bars += &format!("M{:.2} {low:.2}h{cap}m-{CAP} 0V{high:.2}m-{CAP} 0h{cap}", across - CAP);
         }
     }
-    let is_inside =
-        |it: &&Point| [plane.x.part(it.x), plane.y.part(it.y)].iter().all(|part| (0.0..=1.0).contains(part));
+    let is_inside = |it: &&SeriesPoint| {
+        [plane.x.part(it.x), plane.y.part(it.y)].iter().all(|part| (0.0..=1.0).contains(part))
+    };
     let marked = series.points.iter().filter(|_| has_markers(look.style) || series.points.len() == 1);
     let places: Vec<_> = marked.filter(is_inside).map(|it| plane.place(it.x, it.y)).collect();
     if bars.is_empty() && places.is_empty() {
@@ -71,7 +72,7 @@ pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &Look, series: &Series)
 }
 
 /// Adds a legend sample that extends to the right of a position.
-pub(crate) fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f64) {
+pub(crate) fn sample(svg: &mut Svg, look: &SeriesLook, [left, y]: [f64; 2], length: f64) {
     let [x, y, half, right] = [left, y, 0.5 * length, left + length].map(tenths);
     let d = format!("M{x} {y}h{half}h{half}");
     if look.style == Style::Ribbon {
@@ -82,11 +83,11 @@ pub(crate) fn sample(svg: &mut Svg, look: &Look, [left, y]: [f64; 2], length: f6
     if is_scattered(look.style) { svg.path(&markers, &d) } else { line(svg, look, &markers, &d) }
 }
 
-fn light(svg: &mut Svg, look: &Look, outline: &str) {
+fn light(svg: &mut Svg, look: &SeriesLook, outline: &str) {
     svg.path(&format!(" fill=\"{}\" fill-opacity=\"0.25\"", look.colour), &format!("{outline}z"));
 }
 
-fn line(svg: &mut Svg, look: &Look, more: &str, d: &str) {
+fn line(svg: &mut Svg, look: &SeriesLook, more: &str, d: &str) {
     let stroke = stroke(look.colour, if look.style == Style::Joined { 0.6 * CURVE } else { CURVE });
     let dash = format!(" stroke-dasharray=\"{}\"", look.dash);
     svg.path(&format!("{stroke}{}{more}", if look.dash.is_empty() { "" } else { &dash }), d);
@@ -94,8 +95,8 @@ fn line(svg: &mut Svg, look: &Look, more: &str, d: &str) {
 
 /// Defines the marker of a look and returns its name. The name encodes the appearance, because pictures on one page share markers. Markers
 /// have a rim, so that overlapping ones can be counted.
-fn marker(svg: &mut Svg, look: &Look) -> String {
-    let Look { colour, marker, is_hollow, .. } = *look;
+fn marker(svg: &mut Svg, look: &SeriesLook) -> String {
+    let SeriesLook { colour, marker, is_hollow, .. } = *look;
     let (fill, rim, width) = if is_hollow { (PAPER, colour, 1.6) } else { (colour, PAPER, 0.7) };
     let hollow = if is_hollow { "-hollow" } else { "" };
     let (large, scaled) = match look.style {

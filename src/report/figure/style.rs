@@ -98,7 +98,7 @@ const SHORT_DASHES: [&str; 5] = ["6 4", "7 3 2 3", "3 2.5", "7 3 2 3 2 3", "10 4
 /// Look of a series: colour, index of its marker, dashes and gaps of its line (pixels, empty for a solid line), and true for hollow
 /// markers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Look {
+pub(super) struct SeriesLook {
     pub(crate) style: Style,
     pub(crate) colour: Colour,
     pub(crate) marker: usize,
@@ -118,7 +118,7 @@ pub(super) fn has_markers(style: Style) -> bool {
 
 /// Returns a distinct look for each series: lines of one hue differ in their dashes; markers of one hue are first filled, then hollow, then
 /// of another shape.
-pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
+pub(super) fn looks(all: &[&Series]) -> Vec<SeriesLook> {
     let look = |(i, series): (usize, &&Series)| {
         let is_alike = |other: &&&Series| {
             other.style == series.style || has_markers(other.style) && has_markers(series.style)
@@ -134,7 +134,7 @@ pub(super) fn looks(all: &[&Series]) -> Vec<Look> {
             Style::Points | Style::Marks => "",
         };
         let marker = (series.hue + twins / 2) % MARKERS.len();
-        Look { style: series.style, colour: hue(series.hue), marker, dash, is_hollow: twins % 2 == 1 }
+        SeriesLook { style: series.style, colour: hue(series.hue), marker, dash, is_hollow: twins % 2 == 1 }
     };
     all.iter().enumerate().map(look).collect()
 }
@@ -210,7 +210,7 @@ mod tests {
         }
     }
 
-    fn looks_of(series: impl IntoIterator<Item = (Style, usize)>) -> Vec<Look> {
+    fn looks_of(series: impl IntoIterator<Item = (Style, usize)>) -> Vec<SeriesLook> {
         let none: [(f64, f64); 0] = [];
         let all: Vec<Series> =
             series.into_iter().map(|(style, hue)| Series::new("", style, hue, none)).collect();

@@ -2,7 +2,7 @@
 
 use super::quantised::Quantised;
 use crate::report::figure::style;
-use crate::report::section::{Film, Frame};
+use crate::report::section::{Film, FilmFrame};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
@@ -62,7 +62,7 @@ pub(crate) fn data(film: &Film) -> Value {
 
 /// Encodes a number of every disc in every frame with an error of at most `tolerance`, if two bytes suffice.
 fn column(film: &Film, number: impl Fn(&([f64; 2], f64)) -> f64, tolerance: f64) -> Quantised {
-    let of_frame = |frame: &Frame| -> Vec<f64> {
+    let of_frame = |frame: &FilmFrame| -> Vec<f64> {
         (0..film.radii.len()).map(|i| frame.discs.get(i).map_or(f64::NAN, &number)).collect()
     };
     Quantised::within(&film.frames.iter().flat_map(of_frame).collect::<Vec<_>>(), tolerance)
@@ -86,7 +86,7 @@ mod tests {
             radii: (0..discs).map(|disc| 0.01 + 1e-5 * disc as f64).collect(),
             fixed: (0..600).map(|i| ([0.027 * f64::from(i / 2), 0.0275], 0.009)).collect(),
             frames: (0..frames)
-                .map(|frame| Frame {
+                .map(|frame| FilmFrame {
                     time: 0.05 * frame as f64,
                     discs: (0..discs).map(|disc| place(frame, disc)).collect(),
                 })

@@ -3,10 +3,10 @@
 use super::film;
 use super::inline::Inline;
 use super::words::{badge, badges, prose};
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
-use crate::report::{Cell, Section, Table};
+use crate::report::{FormattedTable, Section, TableCell};
 use maud::{Markup, html};
 use stripmine_physics::number::counted;
 
@@ -80,7 +80,7 @@ pub(crate) fn render(section: &Section, pictures: &[Inline]) -> Markup {
 
 /// Table of the claims of the item.
 fn claims(section: &Section) -> Markup {
-    let verdict = |words: &str| Verdict::ALL.into_iter().find(|verdict| verdict.words() == words);
+    let verdict = |words: &str| ClaimVerdict::ALL.into_iter().find(|verdict| verdict.words() == words);
     html! {
         @if !section.claims.is_empty() {
             div.scroll tabindex="0" role="region" aria-label="Claims" {
@@ -168,8 +168,8 @@ fn moving(section: &Section, shown: &Film) -> Markup {
 const ROWS: usize = 10;
 
 /// Table in a box that scrolls if the table is wider than the page. A long table is cut and its file is linked.
-fn table(table: &Table, folder: &str) -> Markup {
-    let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(Cell::is_number));
+fn table(table: &FormattedTable, folder: &str) -> Markup {
+    let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(TableCell::is_number));
     html! {
         div.scroll tabindex="0" role="region" aria-label=(table.title) {
             table.data {
@@ -195,7 +195,7 @@ fn table(table: &Table, folder: &str) -> Markup {
         @if table.rows.len() > ROWS {
             @let file = format!("{folder}/{}.csv", table.name);
             p.note {
-                "First " (ROWS) " of " (Cell::Count(table.rows.len() as u64).for_reading()) " rows; all rows: "
+                "First " (ROWS) " of " (TableCell::Count(table.rows.len() as u64).for_reading()) " rows; all rows: "
                 a href=(file) { code { (file) } } "."
             }
         }

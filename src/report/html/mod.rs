@@ -12,7 +12,7 @@ pub(crate) use film_page::film_page;
 use super::figure::{Figure, style};
 use super::tally::Tally;
 use super::{Chapter, Section};
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use inline::Inline;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
@@ -210,7 +210,7 @@ fn claims(tally: &Tally) -> Markup {
                     thead {
                         tr {
                             th scope="col" { "source" }
-                            @for verdict in Verdict::ALL {
+                            @for verdict in ClaimVerdict::ALL {
                                 th.number scope="col" { (badge(verdict)) }
                             }
                         }

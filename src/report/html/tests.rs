@@ -1,21 +1,23 @@
 //! Tests of the whole page.
 
 use super::*;
-use crate::provenance::{Machine, Provenance};
-use crate::report::figure::{self, Axis, Chart, Drawing, Picture, Point, Series, Shape, Style};
-use crate::report::section::{Film, Frame};
-use crate::report::{Cell, Table};
+use crate::provenance::{MachineDescription, Provenance};
+use crate::report::figure::{
+    self, Chart, ChartAxis, Drawing, DrawnShape, Picture, Series, SeriesPoint, Style,
+};
+use crate::report::section::{Film, FilmFrame};
+use crate::report::{FormattedTable, TableCell};
 use stripmine_physics::origin::Origin;
 
 const HOSTILE: &str = "<script>alert(\"&\")</script>";
 
 fn section(name: &str) -> Section {
-    let axis = |label: &str| Axis::linear(label, Some(HOSTILE));
+    let axis = |label: &str| ChartAxis::linear(label, Some(HOSTILE));
     let series = Series {
         name: HOSTILE.to_owned(),
         style: Style::Joined,
         hue: 0,
-        points: vec![Point::at(1.0, 2.0), Point::at(2.0, 3.0)],
+        points: vec![SeriesPoint::at(1.0, 2.0), SeriesPoint::at(2.0, 3.0)],
     };
     let figure = |name: &str, picture| Figure {
         name: name.to_owned(),
@@ -27,7 +29,7 @@ fn section(name: &str) -> Section {
     let drawing = Drawing {
         window: [[0.0; 2], [1.0; 2]],
         width: 100.0,
-        shapes: vec![Shape::Line { ends: [[0.0; 2], [1.0; 2]] }],
+        shapes: vec![DrawnShape::Line { ends: [[0.0; 2], [1.0; 2]] }],
         shades: None,
         guide: None,
     };
@@ -43,11 +45,11 @@ fn section(name: &str) -> Section {
             figure("chart", Picture::Charts(vec![(String::new(), chart)])),
             figure("drawing", Picture::Drawing(drawing)),
         ],
-        tables: vec![Table {
+        tables: vec![FormattedTable {
             name: "table".to_owned(),
             title: HOSTILE.to_owned(),
             columns: vec![HOSTILE.to_owned(), "count".to_owned()],
-            rows: vec![vec![HOSTILE.into(), Cell::Count(1_234_567)]],
+            rows: vec![vec![HOSTILE.into(), TableCell::Count(1_234_567)]],
             notes: vec![HOSTILE.to_owned()],
         }],
         excerpt: Some((HOSTILE.to_owned(), HOSTILE.to_owned())),
@@ -59,7 +61,7 @@ fn section(name: &str) -> Section {
             falls: false,
             radii: vec![0.1],
             fixed: vec![],
-            frames: vec![Frame { time: 0.0, discs: vec![([0.5, 0.5], 1.0)] }],
+            frames: vec![FilmFrame { time: 0.0, discs: vec![([0.5, 0.5], 1.0)] }],
             shade: HOSTILE.to_owned(),
             shades: [0.0, 1.0],
         }),
@@ -75,7 +77,7 @@ fn section(name: &str) -> Section {
                 target: "some-target".into(),
             },
             command: "some command".into(),
-            machine: Machine {
+            machine: MachineDescription {
                 processor: HOSTILE.into(),
                 model: Some(HOSTILE.into()),
                 cores: 2,

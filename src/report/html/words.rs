@@ -1,11 +1,11 @@
 //! Verdicts and sentences in HTML.
 
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use crate::report::Section;
 use maud::{Markup, html};
 
 /// Badge of a verdict: colour, sign and words.
-pub(super) fn badge(verdict: Verdict) -> Markup {
+pub(super) fn badge(verdict: ClaimVerdict) -> Markup {
     html! {
         span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.words()) }
     }
@@ -24,24 +24,24 @@ pub(super) fn badges(section: &Section) -> Markup {
 }
 
 /// Class of a verdict in the style sheet.
-pub(super) fn kind(verdict: Verdict) -> &'static str {
+pub(super) fn kind(verdict: ClaimVerdict) -> &'static str {
     match verdict {
-        Verdict::Reproduced => "reproduced",
-        Verdict::NotReproduced => "not-reproduced",
-        Verdict::Undecided => "undecided",
-        Verdict::Contradiction => "contradiction",
-        Verdict::NotTested => "not-tested",
+        ClaimVerdict::Reproduced => "reproduced",
+        ClaimVerdict::NotReproduced => "not-reproduced",
+        ClaimVerdict::Undecided => "undecided",
+        ClaimVerdict::Contradiction => "contradiction",
+        ClaimVerdict::NotTested => "not-tested",
     }
 }
 
 /// Sign of a verdict, readable without colour.
-pub(super) fn sign(verdict: Verdict) -> &'static str {
+pub(super) fn sign(verdict: ClaimVerdict) -> &'static str {
     match verdict {
-        Verdict::Reproduced => "✓",
-        Verdict::NotReproduced => "✗",
-        Verdict::Undecided => "?",
-        Verdict::Contradiction => "⇄",
-        Verdict::NotTested => "○",
+        ClaimVerdict::Reproduced => "✓",
+        ClaimVerdict::NotReproduced => "✗",
+        ClaimVerdict::Undecided => "?",
+        ClaimVerdict::Contradiction => "⇄",
+        ClaimVerdict::NotTested => "○",
     }
 }
 

@@ -1,15 +1,15 @@
 //! Smallest error of a mean against the wall time of its run, for each integrator: bias plus statistical error at the best of some steps.
 
-use super::drift::Tried;
-use super::findings::{Findings, Way};
-use super::lengths::Chance;
-use super::recommended::Plan;
-use super::{ExplainError, Target, seen};
-use crate::frame::{Frame, Rows};
-use crate::results::{Journal, Made};
-use crate::study::trial::Trial;
-use crate::study::{Case, Choice};
-use stripmine_physics::method::Decides;
+use super::drift::StepDeviation;
+use super::findings::{Findings, MeasuredConfiguration};
+use super::lengths::StatisticalError;
+use super::recommended::RunPlan;
+use super::{ExplainError, PlanTarget, seen};
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::results::{FinishedItem, Journal};
+use crate::study::trial::TrialControl;
+use crate::study::{SettingChoice, StudyCase};
+use stripmine_physics::method::ChoiceEffect;
 
 pub(crate) const NAME: &str = "accuracy";
 
@@ -25,13 +25,13 @@ const SHORTEST: f64 = 5.0;
 const WISHES: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
 
 /// Smallest error of a configuration against wall time, at the best of its steps.
-struct Curve<'f> {
-    way: &'f Way,
-    points: Vec<Point>,
+struct ErrorCurve<'f> {
+    way: &'f MeasuredConfiguration,
+    points: Vec<ErrorPoint>,
 }
 
 /// Error at a wall time.
-struct Point {
+struct ErrorPoint {
     /// Wall seconds of a run.
     seconds: f64,
     /// The step (time); none where the method takes none.
@@ -46,21 +46,27 @@ struct Point {
 /// # Errors
 /// [`ExplainError`] if every trial fails, or the quantity has no mean.
 pub(crate) fn accuracy(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     seconds: f64,
-    trial: Trial<'_>,
+    trial: TrialControl<'_>,
     (scene, progress, journal): (&str, &dyn Fn(f64), &Journal),
-) -> Result<Made, ExplainError> {
+) -> Result<FinishedItem, ExplainError> {
     let findings = seen::seen(case, target, seconds, trial, (progress, journal))?;
-    let quick = Target { limit: f64::INFINITY, ..target.clone() };
+    let quick = PlanTarget { limit: f64::INFINITY, ..target.clone() };
     let plan = seen::planned(case, &quick, &findings, "").ok();
     Ok(made(scene, target, &findings, plan.as_ref(), case))
 }
 
-fn made(scene: &str, target: &Target, findings: &Findings, plan: Option<&Plan>, case: &Case) -> Made {
+fn made(
+    scene: &str,
+    target: &PlanTarget,
+    findings: &Findings,
+    plan: Option<&RunPlan>,
+    case: &StudyCase,
+) -> FinishedItem {
     let curves = curves(case, findings);
-    Made::of([
+    FinishedItem::of([
         summary(scene, target, findings, &curves),
         points(&curves),
         marks(plan, target),
@@ -70,28 +76,37 @@ fn made(scene: &str, target: &Target, findings: &Findings, plan: Option<&Plan>, 
 }
 
 /// Returns the cheapest configuration of each integrator, or of each engine where there are no integrators.
-fn curves<'f>(case: &Case, findings: &'f Findings) -> Vec<Curve<'f>> {
+fn curves<'f>(case: &StudyCase, findings: &'f Findings) -> Vec<ErrorCurve<'f>> {
     let chance = findings.chance();
-    let mut chosen: Vec<(&Way, Choice)> = vec![];
+    let mut chosen: Vec<(&MeasuredConfiguration, SettingChoice)> = vec![];
     for way in findings.ways.iter().filter(|way| way.dropped.is_none() && way.cost.is_some()) {
         let own = way.choice(case);
-        let is_another = |(_, other): &(&Way, Choice)| {
-            !own.agrees(other, Decides::Order) || own.scheme().is_none() && !own.agrees(other, Decides::Cost)
+        let is_another = |(_, other): &(&MeasuredConfiguration, SettingChoice)| {
+            !own.agrees(other, ChoiceEffect::Order)
+                || own.scheme().is_none() && !own.agrees(other, ChoiceEffect::Cost)
         };
         if chosen.iter().all(is_another) {
             chosen.push((way, own));
         }
     }
-    chosen.iter().map(|(way, _)| Curve { way, points: least_errors(way, case, findings, &chance) }).collect()
+    chosen
+        .iter()
+        .map(|(way, _)| ErrorCurve { way, points: least_errors(way, case, findings, &chance) })
+        .collect()
 }
 
 /// Smallest errors against wall time.
-fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) -> Vec<Point> {
+fn least_errors(
+    way: &MeasuredConfiguration,
+    case: &StudyCase,
+    findings: &Findings,
+    chance: &StatisticalError,
+) -> Vec<ErrorPoint> {
     let Some(cost) = way.cost else { return vec![] };
     if let (Some(drift), Some(step), Some(time)) = (&way.drift, way.step, case.duration()) {
-        let of = |it: &Tried| {
+        let of = |it: &StepDeviation| {
             let seconds = findings.start + findings.of_rows(time) + cost * step / it.step * time;
-            Point { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
+            ErrorPoint { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
         };
         return drift.tried.iter().map(of).filter(|it| it.error.is_finite() && it.error > 0.0).collect();
     }
@@ -111,14 +126,14 @@ fn least_errors(way: &Way, case: &Case, findings: &Findings, chance: &Chance) ->
             let off =
                 way.bias.zip(step).map(|(bias, step)| bias.over(step, time.max(0.0))).unwrap_or_default();
             let chance = if time > 0.0 { chance.over(time) } else { f64::INFINITY };
-            Point { seconds, step, error: off.shift + chance, most: off.below + chance }
+            ErrorPoint { seconds, step, error: off.shift + chance, most: off.below + chance }
         };
         steps.iter().map(of).min_by(|a, b| a.error.total_cmp(&b.error))
     };
     walls.filter_map(least).filter(|point| point.error.is_finite()).collect()
 }
 
-fn summary(scene: &str, target: &Target, findings: &Findings, curves: &[Curve<'_>]) -> Frame {
+fn summary(scene: &str, target: &PlanTarget, findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
     let least = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
     let first = least(&mut curves.iter().filter_map(|curve| Some(curve.points.first()?.seconds)));
     let longest = curves.iter().filter(|curve| curve.way.bound.is_some()).filter_map(|curve| curve.way.step);
@@ -126,7 +141,7 @@ fn summary(scene: &str, target: &Target, findings: &Findings, curves: &[Curve<'_
     let mean = &findings.mean;
     let not_compared =
         findings.ways.iter().filter_map(|way| Some(format!("{}: {}", way.label, way.dropped.as_ref()?)));
-    Rows::of([()])
+    FrameBuilder::of([()])
         .text("scene", |()| scene)
         .text("quantity", |()| target.quantity.name)
         .text("unit", |()| target.quantity.unit)
@@ -142,8 +157,8 @@ fn summary(scene: &str, target: &Target, findings: &Findings, curves: &[Curve<'_
         .frame("summary", "Mean of the scene")
 }
 
-fn points(curves: &[Curve<'_>]) -> Frame {
-    Rows::of(curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point))))
+fn points(curves: &[ErrorCurve<'_>]) -> ResultFrame {
+    FrameBuilder::of(curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point))))
         .text("configuration", |(curve, ..)| &curve.way.label)
         .number("wall time (s)", 6, |(.., point)| point.seconds)
         .short("dt", |(.., point)| point.step)
@@ -156,7 +171,7 @@ fn points(curves: &[Curve<'_>]) -> Frame {
 }
 
 /// The scene as it stands, and the plan.
-fn marks(plan: Option<&Plan>, target: &Target) -> Frame {
+fn marks(plan: Option<&RunPlan>, target: &PlanTarget) -> ResultFrame {
     let own = plan
         .and_then(|plan| plan.own.as_ref())
         .map(|own| ("the scene as it stands", own.seconds, own.error.most));
@@ -166,19 +181,19 @@ fn marks(plan: Option<&Plan>, target: &Target) -> Frame {
         .into_iter()
         .chain(asked)
         .filter(|(_, seconds, error)| seconds.is_finite() && error.is_finite() && *error > 0.0);
-    Rows::of(drawn)
+    FrameBuilder::of(drawn)
         .text("mark", |it| it.0)
         .number("wall time (s)", 6, |it| it.1)
         .number("error", 6, |it| it.2)
         .frame("marks", "The scene as it stands, and the plan")
 }
 
-fn biases(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
-    let steps = |curve: &Curve<'_>| Some((curve.way.bias?, curve.way.step?));
+fn biases(findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
+    let steps = |curve: &ErrorCurve<'_>| Some((curve.way.bias?, curve.way.step?));
     let compared = curves.iter().filter_map(|curve| Some((curve.way, steps(curve)?)));
     let compared = compared.flat_map(|(way, (bias, longest))| STEPS.map(|part| (way, bias, part * longest)));
     let mean = findings.mean.mean.abs();
-    Rows::of(compared)
+    FrameBuilder::of(compared)
         .text("configuration", |it| &it.0.label)
         .short("dt", |it| it.2)
         .short("bias", |it| it.1.measured_at(it.2)[0])
@@ -198,13 +213,13 @@ fn biases(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
         .frame("biases", "Bias of the mean by the step")
 }
 
-fn wishes(findings: &Findings, curves: &[Curve<'_>]) -> Frame {
+fn wishes(findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
     let mean = findings.mean.mean.abs();
     let cheapest = |wish: f64| {
         let all = curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
         all.filter(|(_, point)| point.error <= wish * mean).min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds))
     };
-    Rows::of(WISHES.map(|wish| (wish, cheapest(wish))))
+    FrameBuilder::of(WISHES.map(|wish| (wish, cheapest(wish))))
         .short("error (%)", |(wish, _)| 100.0 * wish)
         .text("cheapest", |(_, found)| {
             found.map_or("none of those drawn".to_owned(), |(curve, _)| curve.way.label.clone())

@@ -1,6 +1,6 @@
 //! Similarity of scenes: decides whether timings of one scene apply to another.
 
-use crate::study::Case;
+use crate::study::StudyCase;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -10,20 +10,20 @@ const PACKING: f64 = 0.05;
 
 /// Properties of a scene that decide which configuration is the fastest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Alike {
+pub(crate) struct SceneFeatures {
     method: String,
     particles: usize,
     /// Area of the particles over that of the box; 0 where the box has no area.
     packing_fraction: f64,
 }
 
-impl Alike {
+impl SceneFeatures {
     /// Returns the properties of a scene.
-    pub(super) fn of(case: &Case) -> Alike {
+    pub(super) fn of(case: &StudyCase) -> SceneFeatures {
         let particles = case.prepared.particles();
         let discs: f64 = particles.grains().iter().map(|it| PI * it.radius * it.radius).sum();
         let packing_fraction = discs / case.prepared.domain.area();
-        Alike {
+        SceneFeatures {
             method: case.entry.vocabulary.keys.method.to_owned(),
             particles: particles.grain_count(),
             packing_fraction: if packing_fraction.is_finite() { packing_fraction } else { 0.0 },
@@ -31,7 +31,7 @@ impl Alike {
     }
 
     /// Distance between two scenes, 0 for equal ones; none where they are not similar.
-    pub(super) fn apart(&self, other: &Alike) -> Option<f64> {
+    pub(super) fn apart(&self, other: &SceneFeatures) -> Option<f64> {
         let of_particles = (self.particles.max(1) as f64 / other.particles.max(1) as f64).ln().abs();
         let apart = (of_particles / PARTICLES.ln())
             .max((self.packing_fraction - other.packing_fraction).abs() / PACKING);

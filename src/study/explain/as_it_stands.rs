@@ -2,9 +2,9 @@
 
 use super::findings::Findings;
 use super::plan::{TIME_WITHIN, own_rows};
-use super::recommended::{Decision, Interval, Plan};
+use super::recommended::{Decision, LikelyRange, RunPlan};
 use super::words::seconds;
-use crate::study::Case;
+use crate::study::StudyCase;
 use stripmine_physics::scene::Overrides;
 
 /// Subject of the decision that leaves the scene as it stands.
@@ -13,11 +13,11 @@ pub(super) const AS_IT_STANDS: &str = "the scene";
 /// Relative difference below which two errors are equal: rounding alone.
 const ROUNDING: f64 = 1e-9;
 
-impl Plan {
+impl RunPlan {
     /// Returns the plan, or the scene as it stands where its error is as small and it takes no longer.
     #[must_use]
-    pub(super) fn or_as_it_stands(self, case: &Case, findings: &Findings) -> Plan {
-        let is_better = |own: &super::recommended::Own| {
+    pub(super) fn or_as_it_stands(self, case: &StudyCase, findings: &Findings) -> RunPlan {
+        let is_better = |own: &super::recommended::OwnResult| {
             own.seconds <= self.seconds.likely && own.error.most <= self.expected.most * (1.0 + ROUNDING)
         };
         let Some(own) = self.own.clone().filter(is_better) else { return self };
@@ -32,7 +32,7 @@ impl Plan {
             "no plan reaches an equally small error in less time; the best takes {}",
             seconds(self.seconds.likely)
         );
-        Plan {
+        RunPlan {
             way: case.own.label(),
             decisions: vec![Decision {
                 what: AS_IT_STANDS.to_owned(),
@@ -41,7 +41,7 @@ impl Plan {
                 beside: vec![],
             }],
             expected: own.error,
-            seconds: Interval::within(own.seconds, TIME_WITHIN),
+            seconds: LikelyRange::within(own.seconds, TIME_WITHIN),
             memory: case.prepared.memory.needed,
             phases,
             step: case.step(),

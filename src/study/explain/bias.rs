@@ -52,7 +52,7 @@ pub(crate) struct Bias {
 
 /// Difference of means at a step, for a window.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct StepDifference {
     /// The step (time).
     pub(super) step: f64,
     /// Step of the reference, where it uses the same integrator (time); 0 where it uses a better one.
@@ -63,7 +63,7 @@ pub(super) struct Seen {
     pub(super) difference: [f64; 2],
 }
 
-impl Seen {
+impl StepDifference {
     /// Estimates the difference of case `place` from a window and the one before, for a quantity with a memory (time) and for the mean over a run
     /// that shows part `of_run` of the steady-state bias.
     pub(super) fn of(
@@ -71,7 +71,7 @@ impl Seen {
         place: usize,
         (memory, of_run): (f64, f64),
         (step, reference): (f64, f64),
-    ) -> Seen {
+    ) -> StepDifference {
         let parts = [window, before].map(|it| part(it.time, memory));
         let pairs = window.differences[place].iter().zip(&before.differences[place]);
         let told: Vec<f64> = pairs
@@ -81,7 +81,7 @@ impl Seen {
             })
             .collect();
         let shown = &window.differences[place];
-        Seen {
+        StepDifference {
             step,
             reference,
             shown: shown.iter().sum::<f64>() / shown.len() as f64,
@@ -93,7 +93,7 @@ impl Seen {
 /// Returns the bias at the first step and its error bar, by a single weighted fit of β (h^p − h_r^p) to all differences.
 ///
 /// The differences share the reference, so their errors are correlated: the error bar is that of the best difference, no smaller.
-pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
+pub(super) fn fitted(seen: &[StepDifference], power: f64) -> [f64; 2] {
     let terms = seen.iter().map(|it| {
         let law = it.step.powf(power) - it.reference.powf(power);
         (law, it.difference[0], it.difference[1].max(f64::MIN_POSITIVE))
@@ -115,7 +115,7 @@ pub(super) fn fitted(seen: &[Seen], power: f64) -> [f64; 2] {
 
 impl Bias {
     /// Estimates the bias from the differences at some steps over a window (time) that shows `part` of it.
-    pub(super) fn of(seen: &[Seen], power: f64, window: f64, part: f64, starts: usize) -> Bias {
+    pub(super) fn of(seen: &[StepDifference], power: f64, window: f64, part: f64, starts: usize) -> Bias {
         let [shift, bar] = fitted(seen, power);
         let shown = seen.first().map_or(0.0, |it| it.shown);
         Bias {
@@ -283,30 +283,30 @@ impl Bias {
     }
 
     /// Expected bias at a step (the quantity's unit), and its upper bound.
-    pub(crate) fn at(&self, step: f64) -> Off {
+    pub(crate) fn at(&self, step: f64) -> BiasEstimate {
         self.over(step, 0.0)
     }
 
     /// Returns the expected bias of a run of a given length (time) at a step, and its upper bound. Both grow with the length where energy drifts.
-    pub(crate) fn over(&self, step: f64, time: f64) -> Off {
+    pub(crate) fn over(&self, step: f64, time: f64) -> BiasEstimate {
         let [part, creep] = [1.0, self.creep * time].map(|it| self.part_at(step) * it);
-        Off { shift: part * self.expected() + creep, below: part * self.below() + creep }
+        BiasEstimate { shift: part * self.expected() + creep, below: part * self.below() + creep }
     }
 }
 
 /// Distance of a mean from its limit at short steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Off {
+pub(crate) struct BiasEstimate {
     /// Expected distance.
     pub shift: f64,
     /// Upper bound, with 95 % confidence.
     pub below: f64,
 }
 
-impl Off {
+impl BiasEstimate {
     /// A distance known exactly.
-    pub(crate) fn exactly(shift: f64) -> Off {
-        Off { shift, below: shift }
+    pub(crate) fn exactly(shift: f64) -> BiasEstimate {
+        BiasEstimate { shift, below: shift }
     }
 
     /// Total error of the mean, with a statistical error of `chance` at 95 % confidence.
@@ -324,8 +324,8 @@ impl Off {
 mod tests {
     use super::*;
 
-    fn seen(step: f64, reference: f64, difference: [f64; 2]) -> Seen {
-        Seen { step, reference, shown: difference[0], difference }
+    fn seen(step: f64, reference: f64, difference: [f64; 2]) -> StepDifference {
+        StepDifference { step, reference, shown: difference[0], difference }
     }
 
     /// By hand: β = 2 at the power 2 with steps 0.2 and 0.1 and a reference at 0.05: differences 2 (0.04 − 0.0025) = 0.075 and 2 (0.01 − 0.0025) = 0.015;
@@ -341,7 +341,8 @@ mod tests {
     /// Half of the correction for a short window is added to the error bar: here 0.5 (0.02 − 0.01).
     #[test]
     fn a_bias_falls_with_the_step() {
-        let bias = Bias::of(&[Seen { shown: 0.01, ..seen(0.2, 0.0, [0.02, 0.002]) }], 1.0, 2.0, 0.5, 16);
+        let bias =
+            Bias::of(&[StepDifference { shown: 0.01, ..seen(0.2, 0.0, [0.02, 0.002]) }], 1.0, 2.0, 0.5, 16);
         assert!((bias.shift - 0.02).abs() < 1e-12 && bias.is_significant());
         assert!((bias.bar - f64::hypot(0.002, 0.005)).abs() < 1e-12);
         let half = bias.at(0.1);

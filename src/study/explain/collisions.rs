@@ -2,13 +2,13 @@
 //! over the phase within a step at which the contact begins. A relative error of collisions causes about the same relative error of means, and needs
 //! no long run.
 
-use super::findings::{Way, Work};
-use super::mean::Mean;
-use crate::study::Case;
+use super::findings::{MeasuredConfiguration, SceneTrials};
+use super::mean::TrialMean;
+use crate::study::StudyCase;
 use crate::study::state::delayed;
 use std::sync::atomic::Ordering;
 use stripmine_physics::domain::Domain;
-use stripmine_physics::method::{Encounter, Purpose, Until};
+use stripmine_physics::method::{EncounterGeometry, StartPurpose, Until};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::Overrides;
 
@@ -25,21 +25,26 @@ const LOSSLESS: f64 = 1e-3;
 
 /// Change in a collision: velocity of the first particle and speed of its surface (length/time), and the part of the energy lost.
 #[derive(Clone, Copy, Debug, Default)]
-struct Change {
+struct CollisionChange {
     impulse: [f64; 3],
     lost: f64,
 }
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Returns the relative error of collisions at a step of a configuration, in impulses and spin and in the energy lost. None where particles do
     /// not touch or a collision fails.
-    pub(super) fn error_of_collisions(&self, way: &Way, step: f64, mean: &Mean) -> Option<f64> {
+    pub(super) fn error_of_collisions(
+        &self,
+        way: &MeasuredConfiguration,
+        step: f64,
+        mean: &TrialMean,
+    ) -> Option<f64> {
         let trials = self.case.entry.trials?;
         let speed = approach(&mean.states, &self.case.prepared.domain);
         let reference = self.choice(way).with(trials.references[0]).overrides();
         let (mut off, mut all, mut lost) = ([0.0; 3], 0.0, [0.0; 2]);
         for offset in OFFSETS {
-            let text = (trials.encounter)(&self.case.prepared, Encounter { speed, offset })?;
+            let text = (trials.encounter)(&self.case.prepared, EncounterGeometry { speed, offset })?;
             let case = self.case.beside(&text).ok()?;
             // Grains at rest hardly collide.
             if case.duration()? > MOST * step {
@@ -47,7 +52,7 @@ impl Work<'_> {
             }
             let exact = self.changed(&case, reference.clone().set(trials.step, REFERENCE * step), 0.0)?;
             let overrides = way.choice(&case).overrides().set(trials.step, step);
-            let mut own = Change::default();
+            let mut own = CollisionChange::default();
             for phase in 0..PHASES {
                 let late = f64::from(phase) / f64::from(PHASES) * step;
                 let change = self.changed(&case, overrides.clone(), late)?;
@@ -68,10 +73,10 @@ impl Work<'_> {
     }
 
     /// Runs a collision delayed by a time.
-    fn changed(&self, case: &Case, overrides: Overrides, late: f64) -> Option<Change> {
+    fn changed(&self, case: &StudyCase, overrides: Overrides, late: f64) -> Option<CollisionChange> {
         let prepared = case.prepared_with(&overrides).ok()?;
         let prepared = delayed(&prepared, late);
-        let mut simulation = prepared.start(Purpose::Run).ok()?;
+        let mut simulation = prepared.start(StartPurpose::Run).ok()?;
         let end = Until::Time(case.duration()?);
         simulation.advance(&[end], self.trial.stop).ok()?;
         let is_over = end.has_come(&simulation.clock()) && !self.trial.stop.load(Ordering::Relaxed);
@@ -88,7 +93,7 @@ impl Work<'_> {
         let (before, after) = (prepared.particles(), simulation.particles());
         let [own, now] = [before.grains().first()?, after.grains().first()?];
         let [u, v] = [own.planar_velocity(), now.planar_velocity()];
-        is_over.then(|| Change {
+        is_over.then(|| CollisionChange {
             impulse: [v[0] - u[0], v[1] - u[1], (now.omega - own.omega) * own.radius],
             lost: 1.0 - energy(&after) / energy(before),
         })

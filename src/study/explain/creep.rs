@@ -1,13 +1,13 @@
 //! Energy drift along long runs. An integrator without a shadow energy loses or gains a little in every step, and the loss accumulates where nothing
 //! drives or dissipates. A mean then changes with the length of its run, which pairs of short runs do not show.
 
-use super::findings::{Way, Work};
-use super::mean::Mean;
-use crate::study::Choice;
-use crate::study::observed::{Balanced, Observed};
-use crate::study::trial::Span;
+use super::findings::{MeasuredConfiguration, SceneTrials};
+use super::mean::TrialMean;
+use crate::study::SettingChoice;
+use crate::study::observed::{BalanceIndices, StudyQuantities};
+use crate::study::trial::SampleSpan;
 use stripmine_physics::averages::of_independent;
-use stripmine_physics::method::Decides;
+use stripmine_physics::method::ChoiceEffect;
 
 /// Share of the trial time for the drift of a configuration.
 const SHARE: f64 = 0.03;
@@ -16,13 +16,17 @@ const STRETCHES: usize = 8;
 /// Part of all moving energy that may enter or leave a conservative run.
 const KEPT: f64 = 1e-9;
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// For each integrator in use, returns its choice, its longest step (time), and the growth of its bias at that step.
-    pub(super) fn creeps(&self, ways: &[Way], mean: &Mean) -> Vec<(Choice, f64, f64)> {
-        let mut all: Vec<(Choice, f64, f64)> = vec![];
+    pub(super) fn creeps(
+        &self,
+        ways: &[MeasuredConfiguration],
+        mean: &TrialMean,
+    ) -> Vec<(SettingChoice, f64, f64)> {
+        let mut all: Vec<(SettingChoice, f64, f64)> = vec![];
         for way in ways.iter().filter(|way| way.dropped.is_none()) {
             let choice = self.choice(way);
-            let is_another = all.iter().all(|(other, ..)| !other.agrees(&choice, Decides::Order));
+            let is_another = all.iter().all(|(other, ..)| !other.agrees(&choice, ChoiceEffect::Order));
             if let Some(step) = way.step.filter(|_| is_another) {
                 all.push((choice, step, self.creep(way, mean)));
             }
@@ -33,7 +37,7 @@ impl Work<'_> {
     /// Growth of a bias at the longest step (the quantity's unit, per unit of time); 0 where energy enters or leaves, or no drift is significant.
     ///
     /// Energies, and with them temperature and pressure, change by the same part; a mean over the run changes by half of that.
-    fn creep(&self, way: &Way, mean: &Mean) -> f64 {
+    fn creep(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> f64 {
         let keeps_shadow = || {
             let integrators = self.case.entry.trials?.shadow?.integrators;
             Some(integrators.contains(&self.choice(way).scheme()?.name))
@@ -45,7 +49,7 @@ impl Work<'_> {
         let relative = match way.label == mean.way {
             true => own(&mean.rows),
             false => self
-                .sampled_over(way, way.step, Span::Seconds(SHARE * self.seconds))
+                .sampled_over(way, way.step, SampleSpan::Seconds(SHARE * self.seconds))
                 .ok()
                 .and_then(|sample| own(&sample.rows)),
         };
@@ -54,8 +58,9 @@ impl Work<'_> {
     }
 
     /// Returns the energy balance of a run without drive or dissipation: any imbalance is an error.
-    pub(super) fn conservative(&self, rows: &[Vec<f64>]) -> Option<Balanced> {
-        let balance = Observed::of(self.case.entry.trials?, self.case.entry.quantities).ok()?.balance?;
+    pub(super) fn conservative(&self, rows: &[Vec<f64>]) -> Option<BalanceIndices> {
+        let balance =
+            StudyQuantities::of(self.case.entry.trials?, self.case.entry.quantities).ok()?.balance?;
         let [first, last] = [rows.first()?, rows.last()?];
         let lost =
             balance.energy(last) - balance.energy(first) - (balance.error(last) - balance.error(first));
@@ -65,7 +70,7 @@ impl Work<'_> {
 }
 
 /// Relative energy drift per unit of time, and half the width of its 95 % interval.
-fn drift(balance: &Balanced, rows: &[Vec<f64>]) -> Option<[f64; 2]> {
+fn drift(balance: &BalanceIndices, rows: &[Vec<f64>]) -> Option<[f64; 2]> {
     let length = rows.len() / (2 * STRETCHES);
     if length == 0 {
         return None;
@@ -91,7 +96,8 @@ mod tests {
     #[test]
     fn drift_is_separated_from_oscillation() {
         let method = METHODS.iter().find(|it| it.trials.is_some_and(|it| it.shadow.is_some())).unwrap();
-        let balance = Observed::of(method.trials.unwrap(), method.quantities).unwrap().balance.unwrap();
+        let balance =
+            StudyQuantities::of(method.trials.unwrap(), method.quantities).unwrap().balance.unwrap();
         let place = |name: &str| method.quantities.iter().position(|it| it.name == name).unwrap();
         let row = |at: usize, rate: f64| {
             let mut row = vec![0.0; method.quantities.len()];

@@ -1,23 +1,23 @@
 //! Decisions of a plan, each with its reason and its alternatives.
 
-use super::findings::{Findings, Way};
-use super::lengths::{Length, Weighed};
-use super::recommended::{Beside, Decision, LeftOut, Need};
-use crate::study::Case;
+use super::findings::{Findings, MeasuredConfiguration};
+use super::lengths::{PlanCandidate, RunLength};
+use super::recommended::{Alternative, Decision, NecessityVerdict, SimplerModelReport};
+use crate::study::StudyCase;
 use stripmine_physics::number::significant;
 
 /// Returns every decision of a plan.
 pub(super) fn decisions(
-    case: &Case,
+    case: &StudyCase,
     findings: &Findings,
-    weighed: &[Weighed<'_>],
-    length: &Length,
+    weighed: &[PlanCandidate<'_>],
+    length: &RunLength,
     (wanted, window): (f64, Option<[f64; 2]>),
 ) -> Vec<Decision> {
     let best = &weighed[0];
     let mut all = vec![];
     for (axis, chosen) in &best.way.settings {
-        let mut beside: Vec<Beside> = vec![];
+        let mut beside: Vec<Alternative> = vec![];
         // The cheapest configuration represents each other setting.
         let known = weighed.iter().map(|it| it.way);
         for way in known.chain(&findings.ways) {
@@ -29,7 +29,7 @@ pub(super) fn decisions(
             let differs = way.settings.iter().filter(|it| !best.way.settings.contains(it) && it.0 != *axis);
             let with: Vec<&str> = differs.map(|(_, name)| name.as_str()).collect();
             let with = if with.is_empty() { String::new() } else { format!(" (with {})", with.join(" ")) };
-            beside.push(Beside {
+            beside.push(Alternative {
                 name: other.clone(),
                 cost: own.map(|it| it.optimum.seconds / best.optimum.seconds),
                 why: why_not(way, own, best) + &with,
@@ -77,7 +77,7 @@ pub(super) fn decisions(
 }
 
 /// Reason of the length of a run.
-fn run_length(case: &Case, findings: &Findings, length: &Length, window: Option<[f64; 2]>) -> String {
+fn run_length(case: &StudyCase, findings: &Findings, length: &RunLength, window: Option<[f64; 2]>) -> String {
     if let Some([from, _]) = window {
         return format!("to the end of the requested window, which begins at {}", significant(from, 4));
     }
@@ -105,13 +105,13 @@ fn run_length(case: &Case, findings: &Findings, length: &Length, window: Option<
     why
 }
 
-fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> Decision {
+fn step_decision(case: &StudyCase, best: &PlanCandidate<'_>, longest: f64, wanted: f64) -> Decision {
     let step = best.optimum.part * longest;
     let own = case
         .step()
         .map_or(String::new(), |own| format!("{} times the scene's own; ", significant(step / own, 2)));
     let bound = best.way.bound.clone().unwrap_or_else(|| "no theoretical limit".to_owned());
-    let mut beside = vec![Beside {
+    let mut beside = vec![Alternative {
         name: significant(longest, 3),
         cost: None,
         why: format!("the longest usable step ({bound})"),
@@ -135,7 +135,7 @@ fn step_decision(case: &Case, best: &Weighed<'_>, longest: f64, wanted: f64) -> 
     Decision { what: "dt".to_owned(), chosen: significant(step, 4), why, beside }
 }
 
-fn why_not(way: &Way, own: Option<&Weighed<'_>>, best: &Weighed<'_>) -> String {
+fn why_not(way: &MeasuredConfiguration, own: Option<&PlanCandidate<'_>>, best: &PlanCandidate<'_>) -> String {
     if let Some(why) = &way.dropped {
         return why.clone();
     }
@@ -166,7 +166,7 @@ fn why_not(way: &Way, own: Option<&Weighed<'_>>, best: &Weighed<'_>) -> String {
 }
 
 /// Returns the changes of the mean by simpler models, each judged against the target error.
-pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftOut> {
+pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<SimplerModelReport> {
     let all = findings.without.iter().map(|it| {
         let off = it.difference.map(|[difference, bar]| {
             let parts = [difference, bar].map(|value| significant(value, 2));
@@ -174,22 +174,22 @@ pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftO
             format!("by {} ± {} ({} ± {} %)", parts[0], parts[1], shares[0], shares[1])
         });
         let need = match it.difference {
-            Some([difference, bar]) if difference.abs() - bar > wanted => Need::Yes,
-            Some([difference, bar]) if difference.abs() + bar <= wanted => Need::No,
-            Some(_) => Need::Undecided,
-            None => Need::NotCompared,
+            Some([difference, bar]) if difference.abs() - bar > wanted => NecessityVerdict::Yes,
+            Some([difference, bar]) if difference.abs() + bar <= wanted => NecessityVerdict::No,
+            Some(_) => NecessityVerdict::Undecided,
+            None => NecessityVerdict::NotCompared,
         };
         let off = off.unwrap_or_default();
         let says = match need {
-            Need::Yes => format!("needed: without it the mean changes {off}"),
-            Need::No => format!("not needed for this error: without it the mean changes {off}"),
-            Need::Undecided => format!("undecided: the mean changes {off}"),
-            Need::NotCompared => match &it.failed {
+            NecessityVerdict::Yes => format!("needed: without it the mean changes {off}"),
+            NecessityVerdict::No => format!("not needed for this error: without it the mean changes {off}"),
+            NecessityVerdict::Undecided => format!("undecided: the mean changes {off}"),
+            NecessityVerdict::NotCompared => match &it.failed {
                 Some(why) => format!("not compared: {why}"),
                 None => "not compared".to_owned(),
             },
         };
-        LeftOut { name: it.name.clone(), change: it.difference, cost: it.cost, need, says }
+        SimplerModelReport { name: it.name.clone(), change: it.difference, cost: it.cost, need, says }
     });
     all.chain(digits(findings)).collect()
 }
@@ -198,11 +198,12 @@ pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<LeftO
 const DIGITS: [&str; 2] = ["f64", "f32"];
 
 /// Compares single with double precision by the cheapest configuration timed in both.
-fn digits(findings: &Findings) -> Option<LeftOut> {
-    let of =
-        |way: &Way, axis: &str| way.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone());
-    let with = |half: &Way| {
-        let is_twin = |other: &&Way| {
+fn digits(findings: &Findings) -> Option<SimplerModelReport> {
+    let of = |way: &MeasuredConfiguration, axis: &str| {
+        way.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone())
+    };
+    let with = |half: &MeasuredConfiguration| {
+        let is_twin = |other: &&MeasuredConfiguration| {
             of(other, AXIS).as_deref() == Some(DIGITS[0])
                 && other.settings.iter().all(|it| it.0 == AXIS || half.settings.contains(it))
         };
@@ -216,9 +217,9 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
         Some((half, cost))
     })?;
     let (need, says) = match (&half.dropped, half.bias.filter(|bias| bias.bar.is_finite())) {
-        (Some(why), _) => (Need::Yes, format!("needed: {why}")),
+        (Some(why), _) => (NecessityVerdict::Yes, format!("needed: {why}")),
         (None, Some(bias)) => (
-            Need::No,
+            NecessityVerdict::No,
             format!(
                 "not needed: in f32 the mean has a bias of {} ± {} at a step of {}, including the bias of that step",
                 significant(bias.shift, 2),
@@ -226,9 +227,9 @@ fn digits(findings: &Findings) -> Option<LeftOut> {
                 significant(bias.step, 3)
             ),
         ),
-        (None, None) => (Need::NotCompared, "not compared".to_owned()),
+        (None, None) => (NecessityVerdict::NotCompared, "not compared".to_owned()),
     };
-    Some(LeftOut {
+    Some(SimplerModelReport {
         name: "double precision (f32 for f64)".to_owned(),
         change: None,
         cost: Some(cost),

@@ -1,11 +1,11 @@
 //! Bias of the steps of each integrator, from runs that start from the same states.
 
-use super::bias::{Bias, Seen};
-use super::findings::{HALVINGS, Way, Work, sort};
-use super::mean::{FEWEST, Mean};
-use crate::study::trial::{Compared, Paired, TOGETHER, pairs, part};
-use crate::study::{Choice, first_line};
-use stripmine_physics::method::{Decides, Prepared, Purpose};
+use super::bias::{Bias, StepDifference};
+use super::findings::{HALVINGS, MeasuredConfiguration, SceneTrials, sort};
+use super::mean::{FEWEST, TrialMean};
+use crate::study::trial::{PairedConfigurations, PairedMeans, TOGETHER, pairs, part};
+use crate::study::{SettingChoice, first_line};
+use stripmine_physics::method::{ChoiceEffect, Prepared, StartPurpose};
 use stripmine_physics::scene::Overrides;
 
 /// Most integrators whose means are compared.
@@ -27,17 +27,17 @@ const SHORTER: f64 = 0.125;
 const POWERS: [f64; 2] = [1.0, 2.0];
 
 /// Configurations to compare, the reference first, each with its step.
-struct Cases {
+struct PairedCases {
     /// Index of the cheapest configuration of each integrator.
     firsts: Vec<usize>,
     prepared: Vec<(Prepared, f64)>,
     /// Steps between two rows.
     steps: Vec<u64>,
-    reference: Choice,
+    reference: SettingChoice,
 }
 
 /// Reasons why there are no paired runs.
-enum Trouble {
+enum PairingFailure {
     /// Too few states to start from.
     FewStates,
     /// Two windows of all cases exceed the available time.
@@ -46,10 +46,10 @@ enum Trouble {
     Broken(usize, String),
 }
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Measures the bias of the cheapest configuration of each integrator. All that differ in precision or search alone share it: rounding is far
     /// below the resolution of a mean.
-    pub(super) fn biases(&self, ways: &mut [Way], mean: &Mean) {
+    pub(super) fn biases(&self, ways: &mut [MeasuredConfiguration], mean: &TrialMean) {
         if self.case.entry.trials.is_none() {
             return;
         }
@@ -61,13 +61,13 @@ impl Work<'_> {
         for _ in 0..=HALVINGS * COMPARED as u32 {
             let Some(cases) = self.cases(ways, most) else { break };
             match self.paired(&cases, mean, seconds) {
-                Err(Trouble::FewStates) => break,
+                Err(PairingFailure::FewStates) => break,
                 // The first short runs have little time.
-                Err(Trouble::TooDear) if seconds < all => seconds = all,
+                Err(PairingFailure::TooDear) if seconds < all => seconds = all,
                 // The best configuration and the scene's own are the fewest that can be compared.
-                Err(Trouble::TooDear) if most > 1 => most -= 1,
-                Err(Trouble::TooDear) => break,
-                Err(Trouble::Broken(at, why)) => {
+                Err(PairingFailure::TooDear) if most > 1 => most -= 1,
+                Err(PairingFailure::TooDear) => break,
+                Err(PairingFailure::Broken(at, why)) => {
                     // The reference has the shortest step of all: its configuration is unusable.
                     let Some(first) = at.checked_sub(1).map(|at| cases.firsts[at / STEPS.len()]) else {
                         break;
@@ -105,7 +105,7 @@ impl Work<'_> {
         }
         self.without_pairs(ways, mean);
         for (choice, step, creep) in creeps {
-            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, Decides::Order)) {
+            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, ChoiceEffect::Order)) {
                 way.bias = way.bias.map(|bias| bias.with_creep(step, creep));
             }
         }
@@ -113,14 +113,14 @@ impl Work<'_> {
     }
 
     /// Adds the biases from the shadow energy and from single collisions to those from paired runs.
-    fn without_pairs(&self, ways: &mut [Way], mean: &Mean) {
+    fn without_pairs(&self, ways: &mut [MeasuredConfiguration], mean: &TrialMean) {
         let of_mean =
             ways.iter().find_map(|way| Some((self.choice(way), mean.step?, self.of_shadow(way, mean)?)));
-        let mut seen: Vec<(Choice, Option<f64>)> = vec![];
+        let mut seen: Vec<(SettingChoice, Option<f64>)> = vec![];
         for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
             let Some(bias) = way.bias else { continue };
             let choice = self.choice(way);
-            let alike = |other: &Choice| other.agrees(&choice, Decides::Order);
+            let alike = |other: &SettingChoice| other.agrees(&choice, ChoiceEffect::Order);
             let bias = match &of_mean {
                 Some((of_mean, step, shadow)) if alike(of_mean) => bias.with_shadow(*step, *shadow),
                 _ => bias,
@@ -137,13 +137,14 @@ impl Work<'_> {
     }
 
     /// Returns the configurations to compare; none where one cannot be prepared.
-    fn cases(&self, ways: &[Way], most: usize) -> Option<Cases> {
+    fn cases(&self, ways: &[MeasuredConfiguration], most: usize) -> Option<PairedCases> {
         let mut firsts: Vec<usize> = vec![];
         for (at, way) in ways.iter().enumerate().filter(|(_, way)| way.dropped.is_none()) {
             let own = self.choice(way);
-            let is_another = firsts.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, Decides::Order));
+            let is_another =
+                firsts.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, ChoiceEffect::Order));
             // The scene's own is always included: a plan states the error of the scene's own values.
-            let is_own = own.agrees(&self.case.own, Decides::Order);
+            let is_own = own.agrees(&self.case.own, ChoiceEffect::Order);
             if is_another && (firsts.len() < most || is_own) {
                 firsts.push(at);
             }
@@ -170,14 +171,19 @@ impl Work<'_> {
             Some((self.prepared(overrides, Some(even)).ok()?, even))
         });
         let prepared = prepared.collect::<Option<Vec<_>>>()?;
-        Some(Cases { firsts, prepared, steps, reference })
+        Some(PairedCases { firsts, prepared, steps, reference })
     }
 
     /// Runs all cases from the same states.
-    fn paired(&self, cases: &Cases, mean: &Mean, seconds: f64) -> Result<Paired, Trouble> {
+    fn paired(
+        &self,
+        cases: &PairedCases,
+        mean: &TrialMean,
+        seconds: f64,
+    ) -> Result<PairedMeans, PairingFailure> {
         let steps = &cases.steps;
         if mean.states.len() < FEWEST {
-            return Err(Trouble::FewStates);
+            return Err(PairingFailure::FewStates);
         }
         let first = self.case.prepared.model.period().map_or(FIRST, |_| A_PERIOD);
         // As many states as leave time for two windows.
@@ -185,7 +191,7 @@ impl Work<'_> {
         let seconds = seconds.min(self.left());
         let fitting = seconds * rayon::current_num_threads() as f64 / (mean.step_cost * two_windows as f64);
         if fitting < 0.5 * FEWEST as f64 {
-            return Err(Trouble::TooDear);
+            return Err(PairingFailure::TooDear);
         }
         let starts = (fitting as usize).clamp(FEWEST, mean.states.len());
         let begin = |case: usize, start: usize| {
@@ -194,16 +200,22 @@ impl Work<'_> {
             // All runs from one state see the same noise; each state has its own.
             let parts = (steps[0] / steps[case]) as u32;
             let prepared = prepared.model.with_noise(start as u64, parts).unwrap_or(prepared);
-            prepared.start(Purpose::Run).map_err(|failure| first_line(&failure.what()))
+            prepared.start(StartPurpose::Run).map_err(|failure| first_line(&failure.what()))
         };
-        let compared = Compared { steps, first, starts, begin: &begin };
+        let compared = PairedConfigurations { steps, first, starts, begin: &begin };
         let observed = (self.case.entry.quantities, self.target.place);
         pairs(&self.trial, &compared, observed, seconds)
-            .map_err(|broken| Trouble::Broken(broken.at, broken.why))
+            .map_err(|broken| PairingFailure::Broken(broken.at, broken.why))
     }
 
     /// Assigns the biases measured by paired runs.
-    fn assign(&self, ways: &mut [Way], cases: &Cases, paired: &Paired, mean: &Mean) {
+    fn assign(
+        &self,
+        ways: &mut [MeasuredConfiguration],
+        cases: &PairedCases,
+        paired: &PairedMeans,
+        mean: &TrialMean,
+    ) {
         // A run that never becomes stationary remembers all of itself. Values within a period compensate each other, which is no short memory.
         let period = self.case.prepared.model.period().unwrap_or(0.0);
         let memory = self.whole.unwrap_or((0.5 * mean.known.apart).max(period));
@@ -211,35 +223,35 @@ impl Work<'_> {
         for (number, &first) in cases.firsts.iter().enumerate() {
             let choice = self.choice(&ways[first]);
             let power = self.power(&choice);
-            let is_of_reference = choice.agrees(&cases.reference, Decides::Order);
+            let is_of_reference = choice.agrees(&cases.reference, ChoiceEffect::Order);
             let longest = paired.windows.iter().rev().find(|it| it.scatter <= TOGETHER);
             let shortest = SHORTER * longest.or(paired.windows.first()).map_or(0.0, |window| window.time);
             let bias = paired.windows.windows(2).filter(|both| both[1].time >= shortest).map(|both| {
-                let seen: Vec<Seen> = (0..STEPS.len())
+                let seen: Vec<StepDifference> = (0..STEPS.len())
                     .map(|at| {
                         let place = number * STEPS.len() + at;
                         let reference = if is_of_reference { cases.prepared[0].1 } else { 0.0 };
                         let steps = (cases.prepared[1 + place].1, reference);
-                        Seen::of([&both[0], &both[1]], place, (memory, of_run), steps)
+                        StepDifference::of([&both[0], &both[1]], place, (memory, of_run), steps)
                     })
                     .collect();
                 Bias::of(&seen, power, both[1].time, part(both[1].time, memory), paired.starts)
             });
             // Longer windows show more of the bias but scatter more: the one with the smallest error bar is used.
             let best = bias.filter(|it| it.below().is_finite()).min_by(|a, b| a.bar.total_cmp(&b.bar));
-            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, Decides::Order)) {
+            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, ChoiceEffect::Order)) {
                 way.bias = best;
             }
         }
     }
 
     /// Power of the step that errors of means follow: the theoretical order for positions, within [`POWERS`].
-    fn power(&self, choice: &Choice) -> f64 {
+    fn power(&self, choice: &SettingChoice) -> f64 {
         self.theory(choice).map_or(POWERS[1], |order| order.clamp(POWERS[0], POWERS[1]))
     }
 
     /// Theoretical order of position errors in the step.
-    pub(super) fn theory(&self, choice: &Choice) -> Option<f64> {
+    pub(super) fn theory(&self, choice: &SettingChoice) -> Option<f64> {
         let (trials, scheme) = self.case.entry.trials.zip(choice.scheme())?;
         Some((trials.theory)(&self.case.values, &self.case.prepared, scheme)?.order)
     }

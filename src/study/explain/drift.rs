@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Largest deviation of a quantity from its first value, at one step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Tried {
+pub(crate) struct StepDeviation {
     /// The step (time).
     pub step: f64,
     /// Largest deviation (the quantity's unit); infinite where the run fails.
@@ -16,20 +16,20 @@ pub(crate) struct Tried {
 
 /// Runs of a configuration at several steps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Drift {
+pub(crate) struct StepDeviations {
     /// Runs, the longest step first.
-    pub(crate) tried: Vec<Tried>,
+    pub(crate) tried: Vec<StepDeviation>,
 }
 
-impl Drift {
+impl StepDeviations {
     /// Adds a run.
     pub(super) fn add(&mut self, step: f64, farthest: f64) {
-        self.tried.push(Tried { step, farthest });
+        self.tried.push(StepDeviation { step, farthest });
         self.tried.sort_by(|a, b| b.step.total_cmp(&a.step));
     }
 
     /// Returns the longest step tried at which the deviation stays within an error at this step and at all shorter ones.
-    pub(crate) fn step_for(&self, error: f64) -> Option<Tried> {
+    pub(crate) fn step_for(&self, error: f64) -> Option<StepDeviation> {
         self.tried.iter().rev().take_while(|it| it.farthest <= error).last().copied()
     }
 
@@ -58,8 +58,9 @@ impl Drift {
         let shortest = self.tried.last()?;
         let Some(found) = self.step_for(error) else {
             // Only rounding is left, or chaos: two halvings in a row gain nothing.
-            let gains =
-                |pair: &[Tried]| pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite();
+            let gains = |pair: &[StepDeviation]| {
+                pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite()
+            };
             let last = self.tried.windows(2).rev().take(2);
             let is_stuck = self.tried.len() > 4 && last.filter(|pair| !gains(pair)).count() == 2;
             let is_far = self.expected_step(error).is_some_and(|step| step < 0.25 * shortest.step);
@@ -82,8 +83,8 @@ const CLOSE: f64 = 1.3;
 mod tests {
     use super::*;
 
-    fn tried(runs: &[[f64; 2]]) -> Drift {
-        let mut drift = Drift::default();
+    fn tried(runs: &[[f64; 2]]) -> StepDeviations {
+        let mut drift = StepDeviations::default();
         runs.iter().for_each(|&[step, farthest]| drift.add(step, farthest));
         drift
     }

@@ -1,14 +1,14 @@
 //! Measures the deviation of conserved quantities over whole runs, step by step: long steps are cheap and come first.
 
 use super::ExplainError;
-use super::findings::{Findings, NO_TIME, NoRun, Way, Work, sort};
+use super::findings::{Findings, MeasuredConfiguration, MissingRun, NO_TIME, SceneTrials, sort};
 use super::plan::in_unit;
 use crate::results::side_by_side;
 use crate::study::rounded;
-use crate::study::trial::{Known, Span, any_number};
+use crate::study::trial::{MeanEstimate, SampleSpan, any_number};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::{Outcome, student};
-use stripmine_physics::method::Decides;
+use stripmine_physics::averages::{AverageOutcome, student};
+use stripmine_physics::method::ChoiceEffect;
 
 /// Longest step tried, in steps of the scene.
 const LONGEST: f64 = 64.0;
@@ -23,27 +23,27 @@ pub(super) const WANTED: f64 = 1e-3;
 
 /// A run to the end of the scene.
 #[derive(Serialize, Deserialize)]
-struct WholeRun {
+struct DeviationRun {
     #[serde(with = "any_number")]
     farthest: f64,
-    costs: Option<Costs>,
+    costs: Option<RunCosts>,
 }
 
 /// Wall seconds until the first step, of a row, and of a unit of time, in total and in each phase.
 #[derive(Serialize, Deserialize)]
-struct Costs {
+struct RunCosts {
     start: f64,
     row: f64,
     unit: f64,
     phases: Vec<(String, f64)>,
 }
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Measures the deviation over whole runs, one after the other. The next run is of the configuration expected to reach the error most cheaply, as
     /// long as one may be cheaper than the best found.
     ///
     /// A part of a run says nothing about the rest: bodies may have a close encounter late.
-    pub(super) fn drifts(&self, mut ways: Vec<Way>) -> Result<Findings, ExplainError> {
+    pub(super) fn drifts(&self, mut ways: Vec<MeasuredConfiguration>) -> Result<Findings, ExplainError> {
         let unknown = || ExplainError::NoMean {
             quantity: self.target.quantity.name,
             why: "the scene states no run time, or its method has no time step".to_owned(),
@@ -91,7 +91,7 @@ impl Work<'_> {
         sort(&mut ways);
         self.unless_stopped(Findings {
             ways,
-            mean: Known::exactly(0.0),
+            mean: MeanEstimate::exactly(0.0),
             mean_way: String::new(),
             whole: None,
             starts_differ: None,
@@ -104,7 +104,7 @@ impl Work<'_> {
     }
 
     /// Runs the scene as it stands, where time is left: its user knows its values.
-    fn own_run(&self, ways: &mut [Way], [time, own]: [f64; 2]) {
+    fn own_run(&self, ways: &mut [MeasuredConfiguration], [time, own]: [f64; 2]) {
         let label = self.case.own.label();
         let Some(way) = ways.iter_mut().find(|way| way.label == label && way.dropped.is_none()) else {
             return;
@@ -122,71 +122,92 @@ impl Work<'_> {
 
     /// Runs the whole scene and returns the deviation. If that is within `wanted` and starts are random, more starts are run, and the bound for
     /// another start with 95 % confidence is returned.
-    fn whole_run(&self, way: &Way, step: f64, [time, wanted]: [f64; 2]) -> Result<WholeRun, NoRun> {
+    fn whole_run(
+        &self,
+        way: &MeasuredConfiguration,
+        step: f64,
+        [time, wanted]: [f64; 2],
+    ) -> Result<DeviationRun, MissingRun> {
         let first = self.run_of_start(way, step, time, 0)?;
         if self.case.prepared.seed.is_none() || first.farthest > wanted {
             return Ok(first);
         }
         let others: Vec<u64> = (1..STARTS).collect();
-        let others: Result<Vec<WholeRun>, NoRun> =
+        let others: Result<Vec<DeviationRun>, MissingRun> =
             side_by_side(&others, |&number| self.run_of_start(way, step, time, number));
-        let Ok(others) = others else { return Ok(WholeRun { farthest: MARGIN * first.farthest, ..first }) };
+        let Ok(others) = others else {
+            return Ok(DeviationRun { farthest: MARGIN * first.farthest, ..first });
+        };
         let all: Vec<f64> = others.iter().chain([&first]).map(|it| it.farthest).collect();
-        Ok(WholeRun { farthest: farthest_of_another(&all), ..first })
+        Ok(DeviationRun { farthest: farthest_of_another(&all), ..first })
     }
 
     /// Runs a numbered start; a run that fails has an infinite deviation.
-    fn run_of_start(&self, way: &Way, step: f64, time: f64, number: u64) -> Result<WholeRun, NoRun> {
+    fn run_of_start(
+        &self,
+        way: &MeasuredConfiguration,
+        step: f64,
+        time: f64,
+        number: u64,
+    ) -> Result<DeviationRun, MissingRun> {
         let left = self.left();
         if left == 0.0 {
-            return Err(NoRun(NO_TIME.to_owned()));
+            return Err(MissingRun(NO_TIME.to_owned()));
         }
         let observed = (self.case.entry.quantities, self.target.place);
-        let sample = self
-            .another_start(&way.overrides, Some(step), number)
-            .ok()
-            .and_then(|prepared| self.trial.sample(&prepared, observed, Span::Time(time, Some(left))).ok());
+        let sample = self.another_start(&way.overrides, Some(step), number).ok().and_then(|prepared| {
+            self.trial.sample(&prepared, observed, SampleSpan::Time(time, Some(left))).ok()
+        });
         let sample = match sample {
             Some(sample) => sample,
-            None if self.left() == 0.0 => return Err(NoRun(NO_TIME.to_owned())),
-            None => return Ok(WholeRun { farthest: f64::INFINITY, costs: None }),
+            None if self.left() == 0.0 => return Err(MissingRun(NO_TIME.to_owned())),
+            None => return Ok(DeviationRun { farthest: f64::INFINITY, costs: None }),
         };
         let farthest = match sample.outcome {
-            Outcome::Kept { farthest, .. } => farthest,
+            AverageOutcome::Kept { farthest, .. } => farthest,
             _ => f64::INFINITY,
         };
-        let costs =
-            Costs { start: sample.start, row: sample.row, unit: sample.cost, phases: sample.phases.clone() };
-        sample.cut_off(time).map_or(Ok(WholeRun { farthest, costs: Some(costs) }), |why| Err(NoRun(why)))
+        let costs = RunCosts {
+            start: sample.start,
+            row: sample.row,
+            unit: sample.cost,
+            phases: sample.phases.clone(),
+        };
+        sample
+            .cut_off(time)
+            .map_or(Ok(DeviationRun { farthest, costs: Some(costs) }), |why| Err(MissingRun(why)))
     }
 
     /// Returns index and step of the run that is expected to reach the error most cheaply; none where no time is left for it.
-    fn next_run(&self, ways: &[Way], [time, own]: [f64; 2]) -> Option<(usize, f64)> {
+    fn next_run(&self, ways: &[MeasuredConfiguration], [time, own]: [f64; 2]) -> Option<(usize, f64)> {
         let wanted = self.wanted_drift(ways, own);
-        let seconds = |way: &Way, step: f64| Some(way.cost? * way.step? / step * time);
-        let reached = |way: &Way| seconds(way, way.drift.as_ref()?.step_for(wanted)?.step);
+        let seconds = |way: &MeasuredConfiguration, step: f64| Some(way.cost? * way.step? / step * time);
+        let reached = |way: &MeasuredConfiguration| seconds(way, way.drift.as_ref()?.step_for(wanted)?.step);
         let best = ways.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
         // Among configurations that differ in cost alone, only the cheapest is tried.
-        let is_dearer = |way: &Way, other: &Way| {
+        let is_dearer = |way: &MeasuredConfiguration, other: &MeasuredConfiguration| {
             let [own, others] = [way, other].map(|it| self.choice(it));
-            let is_alike = own.agrees(&others, Decides::Order) && own.agrees(&others, Decides::Digits);
-            let cost = |it: &Way| Some(it.cost? * it.step?);
+            let is_alike =
+                own.agrees(&others, ChoiceEffect::Order) && own.agrees(&others, ChoiceEffect::Digits);
+            let cost = |it: &MeasuredConfiguration| Some(it.cost? * it.step?);
             other.dropped.is_none() && is_alike && cost(other).zip(cost(way)).is_some_and(|(b, a)| b < a)
         };
-        let is_cheapest = |way: &Way| way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other));
-        let is_tried = |way: &Way| way.dropped.is_none() && is_cheapest(way);
+        let is_cheapest = |way: &MeasuredConfiguration| {
+            way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other))
+        };
+        let is_tried = |way: &MeasuredConfiguration| way.dropped.is_none() && is_cheapest(way);
         // Rounding is far below the error of a step: lower precisions begin at the step at which the highest precision reaches the error.
         let finest = self.case.own.with(self.case.entry.trials?.references[0]);
-        let of_finest = |way: &Way| {
+        let of_finest = |way: &MeasuredConfiguration| {
             let own = self.choice(way);
-            let leads = |other: &&Way| {
+            let leads = |other: &&MeasuredConfiguration| {
                 let other_choice = self.choice(other);
-                let is_finest = other_choice.agrees(&finest, Decides::Digits);
-                is_tried(other) && is_finest && other_choice.agrees(&own, Decides::Order)
+                let is_finest = other_choice.agrees(&finest, ChoiceEffect::Digits);
+                is_tried(other) && is_finest && other_choice.agrees(&own, ChoiceEffect::Order)
             };
             ways.iter().find(leads).filter(|leader| leader.label != way.label)
         };
-        let first = |way: &Way| match of_finest(way) {
+        let first = |way: &MeasuredConfiguration| match of_finest(way) {
             Some(leader) => Some(leader.drift.as_ref()?.step_for(wanted)?.step),
             None => Some(rounded(LONGEST * own, 4)),
         };
@@ -202,7 +223,7 @@ impl Work<'_> {
     }
 
     /// Target error of a run: the requested one, or the scene's own once it is known.
-    fn wanted_drift(&self, ways: &[Way], own: f64) -> f64 {
+    fn wanted_drift(&self, ways: &[MeasuredConfiguration], own: f64) -> f64 {
         let of_own = || {
             let own_way = ways.iter().find(|way| way.label == self.case.own.label());
             own_way.and_then(|way| way.drift.as_ref()?.at(own))

@@ -1,12 +1,12 @@
 //! Measurements of a scene that a plan is based on, and the state of its trials.
 
 use super::ExplainError;
-use super::Target;
+use super::PlanTarget;
 use super::bias::Bias;
-use super::drift::Drift;
+use super::drift::StepDeviations;
 use crate::results::{Journal, JournalError};
-use crate::study::trial::{Known, Sample, Span, Trial, any_number};
-use crate::study::{Case, Choice, first_line};
+use crate::study::trial::{MeanEstimate, SampleSpan, TrialControl, TrialSample, any_number};
+use crate::study::{SettingChoice, StudyCase, first_line};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 use stripmine_physics::method::Prepared;
@@ -19,7 +19,7 @@ pub(super) const SHARES: [f64; 5] = [0.15, 0.3, 0.35, 0.12, 0.08];
 
 /// A configuration of the scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Way {
+pub(crate) struct MeasuredConfiguration {
     pub label: String,
     /// Settings, by axis.
     pub settings: Vec<(String, String)>,
@@ -40,7 +40,7 @@ pub(crate) struct Way {
     /// Bias of its step; none where it was not measured.
     pub(crate) bias: Option<Bias>,
     /// Deviation of a conserved quantity, where that is the target.
-    pub(crate) drift: Option<Drift>,
+    pub(crate) drift: Option<StepDeviations>,
     /// Reason why it was dropped.
     pub(crate) dropped: Option<String>,
 }
@@ -49,8 +49,8 @@ pub(crate) struct Way {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Findings {
     /// Configurations by cost, dropped ones last.
-    pub ways: Vec<Way>,
-    pub mean: Known,
+    pub ways: Vec<MeasuredConfiguration>,
+    pub mean: MeanEstimate,
     /// Label of the configuration that measured the mean.
     pub(crate) mean_way: String,
     /// The scene's own run time, where the quantity never becomes stationary and its mean over the whole run is the target (time).
@@ -70,11 +70,11 @@ pub(crate) struct Findings {
     pub(crate) one_thread: f64,
     pub threads: usize,
     /// Simpler models of the scene.
-    pub without: Vec<Without>,
+    pub without: Vec<SimplerModelResult>,
 }
 
-impl Way {
-    pub(super) fn choice(&self, case: &Case) -> Choice {
+impl MeasuredConfiguration {
+    pub(super) fn choice(&self, case: &StudyCase) -> SettingChoice {
         let settings: Vec<(&str, &str)> =
             self.settings.iter().map(|(axis, name)| (axis.as_str(), name.as_str())).collect();
         case.own.with(&settings)
@@ -82,15 +82,15 @@ impl Way {
 }
 
 /// State of the trials of a scene.
-pub(super) struct Work<'w> {
-    pub(super) case: &'w Case,
-    pub(super) target: &'w Target,
+pub(super) struct SceneTrials<'w> {
+    pub(super) case: &'w StudyCase,
+    pub(super) target: &'w PlanTarget,
     pub(super) seconds: f64,
     /// Shares of the trial time, as [`SHARES`].
     pub(super) shares: [f64; 5],
     /// Deadline: no trial begins later, and a running one ends then (s of the watch).
     pub(super) end: f64,
-    pub(super) trial: Trial<'w>,
+    pub(super) trial: TrialControl<'w>,
     /// Finished trials: an interrupted study does not repeat them.
     pub(super) journal: &'w Journal,
     /// Wall seconds of the scene as it stands, once known.
@@ -101,7 +101,7 @@ pub(super) struct Work<'w> {
 
 /// A simpler model of a scene, as measured.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Without {
+pub(crate) struct SimplerModelResult {
     pub name: String,
     /// Mean of the simpler model less the mean of the scene, and its error bar; none where it fails or has no mean.
     #[serde(with = "any_number")]
@@ -114,18 +114,18 @@ pub(crate) struct Without {
 }
 
 /// Reason why a run has no result.
-pub(super) struct NoRun(pub(super) String);
+pub(super) struct MissingRun(pub(super) String);
 
-impl From<JournalError> for NoRun {
-    fn from(error: JournalError) -> NoRun {
-        NoRun(error.to_string())
+impl From<JournalError> for MissingRun {
+    fn from(error: JournalError) -> MissingRun {
+        MissingRun(error.to_string())
     }
 }
 
 /// Reason of trials that were not run.
 pub(super) const NO_TIME: &str = "the trial time was used up (use --patient for more)";
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Seconds until the trials end.
     pub(super) fn left(&self) -> f64 {
         (self.end - self.trial.watch.now()).max(0.0)
@@ -141,7 +141,12 @@ impl Work<'_> {
         })
     }
 
-    pub(super) fn sampled_over(&self, way: &Way, step: Option<f64>, span: Span) -> Result<Sample, String> {
+    pub(super) fn sampled_over(
+        &self,
+        way: &MeasuredConfiguration,
+        step: Option<f64>,
+        span: SampleSpan,
+    ) -> Result<TrialSample, String> {
         if self.left() == 0.0 {
             return Err(NO_TIME.to_owned());
         }
@@ -159,13 +164,13 @@ impl Work<'_> {
         if self.trial.stop.load(Ordering::Relaxed) { Err(ExplainError::Stopped) } else { Ok(made) }
     }
 
-    pub(super) fn choice(&self, way: &Way) -> Choice {
+    pub(super) fn choice(&self, way: &MeasuredConfiguration) -> SettingChoice {
         way.choice(self.case)
     }
 }
 
 /// Sorts configurations by cost, dropped ones last.
-pub(super) fn sort(ways: &mut [Way]) {
-    let key = |way: &Way| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
+pub(super) fn sort(ways: &mut [MeasuredConfiguration]) {
+    let key = |way: &MeasuredConfiguration| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
     ways.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
 }

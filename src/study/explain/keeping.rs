@@ -1,17 +1,17 @@
 //! Plans for conserved quantities: the step at which their deviation stays within the target error.
 
-use super::Target;
-use super::bias::Off;
+use super::PlanTarget;
+use super::bias::BiasEstimate;
 use super::decisions::decisions;
-use super::drift::Drift;
+use super::drift::StepDeviations;
 use super::drifts::WANTED;
-use super::findings::{Findings, Way};
-use super::lengths::{Length, Weighed};
+use super::findings::{Findings, MeasuredConfiguration};
+use super::lengths::{PlanCandidate, RunLength};
 use super::optimum::Optimum;
 use super::plan::{TIME_WITHIN, in_unit, overrides, own_rows, phases, prefer};
-use super::recommended::{Decision, Expected, Interval, Own, Plan};
+use super::recommended::{Decision, ExpectedError, LikelyRange, OwnResult, RunPlan};
 use super::unreached::Unreached;
-use crate::study::Case;
+use crate::study::StudyCase;
 use stripmine_physics::number::significant;
 
 /// Returns the cheapest plan for a quantity that should be conserved over the scene's own run.
@@ -19,30 +19,30 @@ use stripmine_physics::number::significant;
 /// # Errors
 /// [`Unreached`], where no configuration reaches the target.
 pub(crate) fn keeping(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     findings: &Findings,
     origin: &str,
-) -> Result<Plan, Unreached> {
+) -> Result<RunPlan, Unreached> {
     let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
     let time = case.duration().unwrap_or(0.0);
     let of_own = findings.ways.iter().find(|way| way.label == case.own.label());
     let own_error = of_own.and_then(|way| way.drift.as_ref()?.at(case.step()?));
     let error = target.error.map(|width| in_unit(width, 1.0));
     let wanted = error.or(own_error).unwrap_or(WANTED);
-    let costs = |way: &Way, step: f64| {
+    let costs = |way: &MeasuredConfiguration, step: f64| {
         Some(findings.start + findings.of_rows(time) + way.cost? * way.step? / step * time)
     };
-    let mut weighed: Vec<Weighed<'_>> = usable()
+    let mut weighed: Vec<PlanCandidate<'_>> = usable()
         .filter_map(|way| {
             let found = way.drift.as_ref()?.step_for(wanted)?;
             let optimum = Optimum {
                 part: found.step / way.step?,
-                bias: Off::exactly(found.farthest),
+                bias: BiasEstimate::exactly(found.farthest),
                 time,
                 seconds: costs(way, found.step)?,
             };
-            Some(Weighed { way, optimum })
+            Some(PlanCandidate { way, optimum })
         })
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
@@ -59,12 +59,12 @@ pub(crate) fn keeping(
         return Err(Unreached { takes: Some([likely, target.limit]), ..Unreached::of(wanted, least) });
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
-    let length = Length { time, seeds: 1, seconds: likely, why: String::new() };
+    let length = RunLength { time, seeds: 1, seconds: likely, why: String::new() };
     let mut decisions = decisions(case, findings, &weighed, &length, (wanted, None));
     decisions.truncate(case.entry.axes.len());
     let drift = best.way.drift.as_ref();
     decisions.extend(drift.zip(step).map(|(drift, step)| step_of(drift, step, time)));
-    Ok(Plan {
+    Ok(RunPlan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
         way: best.way.label.clone(),
@@ -73,8 +73,8 @@ pub(crate) fn keeping(
         mean: None,
         error,
         decisions,
-        expected: Expected::of(best.optimum.bias, 0.0),
-        seconds: Interval::within(likely, TIME_WITHIN),
+        expected: ExpectedError::of(best.optimum.bias, 0.0),
+        seconds: LikelyRange::within(likely, TIME_WITHIN),
         memory: case.prepared.memory.needed,
         phases: phases(best, time),
         step,
@@ -86,8 +86,8 @@ pub(crate) fn keeping(
         starts_differ: None,
         overrides: overrides(case, best.way, step, (None, 0.0)),
         own: of_own.zip(case.step()).and_then(|(way, step)| {
-            let error = Off::exactly(own_error.unwrap_or(f64::NAN));
-            Some(Own { seconds: costs(way, step)?, error: Expected::of(error, 0.0) })
+            let error = BiasEstimate::exactly(own_error.unwrap_or(f64::NAN));
+            Some(OwnResult { seconds: costs(way, step)?, error: ExpectedError::of(error, 0.0) })
         }),
         left_out: vec![],
         origin: origin.to_owned(),
@@ -95,7 +95,7 @@ pub(crate) fn keeping(
 }
 
 /// Decision on the step, with the deviation at it and at the next longer one.
-fn step_of(drift: &Drift, step: f64, time: f64) -> Decision {
+fn step_of(drift: &StepDeviations, step: f64, time: f64) -> Decision {
     let at = |step: f64| drift.at(step).map_or("unknown".to_owned(), |farthest| significant(farthest, 2));
     let longer = drift.tried.iter().rev().find(|it| it.step > step * (1.0 + 1e-9));
     let longer = longer.map_or(String::new(), |it| {

@@ -1,12 +1,12 @@
 //! Cache of measurements, for this host and this version of the program: a repeated plan needs no trials.
 
-use super::Target;
-use super::alike::Alike;
+use super::PlanTarget;
+use super::alike::SceneFeatures;
 use super::findings::Findings;
 use super::seen::restore;
 use crate::provenance::Provenance;
-use crate::results::{Identity, Journal, JournalError};
-use crate::study::Case;
+use crate::results::{Journal, JournalError, JournalIdentity};
+use crate::study::StudyCase;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::ffi::OsStr;
@@ -19,7 +19,7 @@ use stripmine_physics::io::replace::{remove_if_there, replace};
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 
 /// Variables that name the user's cache folder, and the folder below.
 const PLACES: [(&str, &str); 2] = [("XDG_CACHE_HOME", "stripmine"), ("HOME", ".cache/stripmine")];
@@ -32,7 +32,7 @@ const KEY: usize = 24;
 
 /// Failures of the cache.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum KeptError {
+pub(crate) enum PlanCacheError {
     /// A cached file cannot be parsed.
     #[error("{} is damaged: it is ignored, and rewritten after the trials", quoted::path(.0))]
     Damaged(PathBuf),
@@ -44,25 +44,25 @@ pub(crate) enum KeptError {
     File(#[from] FileError),
 }
 
-impl Reported for KeptError {
-    fn class(&self) -> Class {
+impl Reported for PlanCacheError {
+    fn class(&self) -> ErrorClass {
         match self {
-            KeptError::Journal(error) => error.class(),
-            KeptError::Damaged(_) | KeptError::File(_) => Class::InputOutput,
+            PlanCacheError::Journal(error) => error.class(),
+            PlanCacheError::Damaged(_) | PlanCacheError::File(_) => ErrorClass::InputOutput,
         }
     }
 }
 
 /// Folder of cached measurements; disabled where the user has no cache folder.
 #[derive(Clone, Debug)]
-pub(crate) struct Kept {
+pub(crate) struct PlanCache {
     folder: Option<PathBuf>,
     host: String,
 }
 
 /// A cached file.
 #[derive(Serialize, Deserialize)]
-struct File {
+struct CachedFindings {
     /// Key of the scene: the name of the file.
     scene: String,
     /// Processor and version of the measurement.
@@ -73,7 +73,7 @@ struct File {
     seconds: f64,
     taken: f64,
     /// Properties by which similar scenes are found.
-    alike: Alike,
+    alike: SceneFeatures,
     findings: Findings,
 }
 
@@ -82,13 +82,15 @@ fn short(commit: &str) -> &str {
     commit.get(..10).unwrap_or(commit)
 }
 
-impl Kept {
+impl PlanCache {
     /// Opens the cache in the user's cache folder, for this processor, number of threads and version.
-    pub(crate) fn here() -> Kept {
-        Kept::within(PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)))
+    pub(crate) fn here() -> PlanCache {
+        PlanCache::within(
+            PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)),
+        )
     }
 
-    pub(crate) fn within(folder: Option<PathBuf>) -> Kept {
+    pub(crate) fn within(folder: Option<PathBuf>) -> PlanCache {
         let here = Provenance::here(String::new(), 0.0);
         let host = format!(
             "{}, {} threads, stripmine {}{}",
@@ -102,11 +104,11 @@ impl Kept {
                 String::new()
             }
         );
-        Kept { folder, host }
+        PlanCache { folder, host }
     }
 
     /// Key of a scene and a quantity. The target error matters only for conserved quantities, where it decides which runs are made.
-    pub(crate) fn key(&self, case: &Case, target: &Target) -> String {
+    pub(crate) fn key(&self, case: &StudyCase, target: &PlanTarget) -> String {
         let mut sum = Sha256::new();
         let error =
             target.error.filter(|_| target.is_kept()).map_or(String::new(), |error| error.to_string());
@@ -128,17 +130,18 @@ impl Kept {
     /// [`KeptError`] if the file exists and cannot be read, or is damaged.
     pub(crate) fn recall(
         &self,
-        case: &Case,
+        case: &StudyCase,
         key: &str,
         seconds: f64,
-    ) -> Result<Option<(Findings, String)>, KeptError> {
+    ) -> Result<Option<(Findings, String)>, PlanCacheError> {
         let Some(path) = self.path(key) else { return Ok(None) };
         let text = match regular_file::read(&path, LONGEST) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(cause) => return Err(FileError::at(&path, "reading")(cause).into()),
         };
-        let mut file: File = serde_json::from_slice(&text).map_err(|_| KeptError::Damaged(path))?;
+        let mut file: CachedFindings =
+            serde_json::from_slice(&text).map_err(|_| PlanCacheError::Damaged(path))?;
         if file.host != self.host || file.seconds < seconds {
             return Ok(None);
         }
@@ -152,10 +155,11 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if the cache cannot be read.
-    pub(super) fn alike(&self, case: &Case) -> Result<Option<(Findings, String)>, KeptError> {
-        let own = Alike::of(case);
+    pub(super) fn alike(&self, case: &StudyCase) -> Result<Option<(Findings, String)>, PlanCacheError> {
+        let own = SceneFeatures::of(case);
         let near = |path: PathBuf| {
-            let file: File = serde_json::from_slice(&regular_file::read(&path, LONGEST).ok()?).ok()?;
+            let file: CachedFindings =
+                serde_json::from_slice(&regular_file::read(&path, LONGEST).ok()?).ok()?;
             let apart = own.apart(&file.alike).filter(|_| file.host == self.host)?;
             Some((apart, file))
         };
@@ -171,11 +175,16 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be read or created.
-    pub(super) fn journal(&self, case: &Case, target: &Target, seconds: f64) -> Result<Journal, KeptError> {
+    pub(super) fn journal(
+        &self,
+        case: &StudyCase,
+        target: &PlanTarget,
+        seconds: f64,
+    ) -> Result<Journal, PlanCacheError> {
         let Some(folder) = self.begun(case, target, seconds) else { return Ok(Journal::none()) };
         fs::create_dir_all(&folder).map_err(FileError::at(&folder, "creating the folder"))?;
         let of = format!("trials of {}", case.arguments());
-        let identity = Identity { of, digest: self.key(case, target) };
+        let identity = JournalIdentity { of, digest: self.key(case, target) };
         Ok(Journal::open(&folder, &identity, None)?)
     }
 
@@ -183,13 +192,18 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be removed.
-    pub(super) fn close(&self, case: &Case, target: &Target, seconds: f64) -> Result<(), KeptError> {
+    pub(super) fn close(
+        &self,
+        case: &StudyCase,
+        target: &PlanTarget,
+        seconds: f64,
+    ) -> Result<(), PlanCacheError> {
         let folder = self.begun(case, target, seconds).filter(|folder| folder.is_dir());
         folder.map_or(Ok(()), |it| Ok(fs::remove_dir_all(&it).map_err(FileError::at(&it, "removing"))?))
     }
 
     /// Folder of the journal of trials of some seconds.
-    fn begun(&self, case: &Case, target: &Target, seconds: f64) -> Option<PathBuf> {
+    fn begun(&self, case: &StudyCase, target: &PlanTarget, seconds: f64) -> Option<PathBuf> {
         let name = format!("{}{BEGUN}{seconds}", self.key(case, target));
         Some(self.folder.as_ref()?.join(name))
     }
@@ -200,19 +214,19 @@ impl Kept {
     /// [`KeptError`] if it cannot be written.
     pub(crate) fn keep(
         &self,
-        case: &Case,
+        case: &StudyCase,
         key: &str,
         [seconds, taken]: [f64; 2],
         findings: &Findings,
-    ) -> Result<(), KeptError> {
+    ) -> Result<(), PlanCacheError> {
         let Some(path) = self.path(key) else { return Ok(()) };
-        let file = File {
+        let file = CachedFindings {
             scene: key.to_owned(),
             host: self.host.clone(),
             moment: stripmine_physics::origin::moment(SystemTime::now()),
             seconds,
             taken,
-            alike: Alike::of(case),
+            alike: SceneFeatures::of(case),
             findings: findings.clone(),
         };
         if let Some(folder) = path.parent() {
@@ -234,7 +248,7 @@ impl Kept {
     ///
     /// # Errors
     /// [`KeptError`] if one cannot be removed.
-    pub(crate) fn forget(&self) -> Result<usize, KeptError> {
+    pub(crate) fn forget(&self) -> Result<usize, PlanCacheError> {
         let files: Vec<PathBuf> = self.files()?.into_iter().filter(|file| is_marked(file)).collect();
         files.iter().try_for_each(|file| remove_if_there(file))?;
         let journals = self.entries(|name| name.split_once(BEGUN).is_some_and(|(key, _)| is_key_of(key)))?;
@@ -245,11 +259,11 @@ impl Kept {
     }
 
     /// Lists all files named like a key, in order.
-    fn files(&self) -> Result<Vec<PathBuf>, KeptError> {
+    fn files(&self) -> Result<Vec<PathBuf>, PlanCacheError> {
         self.entries(is_key)
     }
 
-    fn entries(&self, is_ours: fn(&str) -> bool) -> Result<Vec<PathBuf>, KeptError> {
+    fn entries(&self, is_ours: fn(&str) -> bool) -> Result<Vec<PathBuf>, PlanCacheError> {
         let Some(folder) = &self.folder else { return Ok(vec![]) };
         let names = names_in(folder)?.unwrap_or_default();
         Ok(names.iter().filter(|name| is_ours(name)).map(|name| folder.join(name)).collect())

@@ -1,14 +1,14 @@
 //! Simpler models of every scene: the change of a mean, and the time saved.
 
-use super::Target;
+use super::PlanTarget;
 use super::decisions::left_out;
-use super::recommended::LeftOut;
+use super::recommended::SimplerModelReport;
 use super::seen::seen_with_twins;
 use super::twins::has_simpler;
-use crate::frame::{Frame, Rows};
-use crate::results::{Made, Meter, Progress};
-use crate::study::trial::{Stopwatch, Trial};
-use crate::study::{Case, StudyError, first_line};
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::results::{FinishedItem, Progress, ProgressMeter};
+use crate::study::trial::{Stopwatch, TrialControl};
+use crate::study::{StudyCase, StudyError, first_line};
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::METHODS;
 use stripmine_physics::number::significant;
@@ -39,15 +39,15 @@ const GALLERY: &[(&str, &str)] = gallery![
 ];
 
 /// A simpler model of a scene.
-struct Row {
+struct SimplerModelRow {
     scene: &'static str,
     quantity: &'static str,
     mean: f64,
-    twin: LeftOut,
+    twin: SimplerModelReport,
 }
 
 /// A scene that was not compared.
-struct Without {
+struct UncomparedScene {
     scene: &'static str,
     quantity: &'static str,
     why: String,
@@ -67,33 +67,33 @@ pub(crate) fn compared(
     only: Option<&[&str]>,
     seconds: f64,
     progress: Progress<'_>,
-) -> Result<Made, StudyError> {
+) -> Result<FinishedItem, StudyError> {
     let scenes: Vec<_> =
         scenes().into_iter().filter(|(name, _)| only.is_none_or(|only| only.contains(name))).collect();
-    let meter = Meter::new(scenes.len() as f64, progress);
+    let meter = ProgressMeter::new(scenes.len() as f64, progress);
     let (watch, stop) = (Stopwatch::wall(), AtomicBool::new(false));
     let (mut rows, mut without) = (vec![], vec![]);
     for (scene, text) in scenes {
-        let case = Case::parse(scene, text, &[], METHODS)?;
-        let target = Target::of(&case, None, None).map_err(|error| StudyError::Own(Box::new(error)))?;
+        let case = StudyCase::parse(scene, text, &[], METHODS)?;
+        let target = PlanTarget::of(&case, None, None).map_err(|error| StudyError::Own(Box::new(error)))?;
         let quantity = target.quantity.name;
-        let of = |why: String| Without { scene, quantity, why };
-        let trial = Trial { watch: &watch, stop: &stop };
+        let of = |why: String| UncomparedScene { scene, quantity, why };
+        let trial = TrialControl { watch: &watch, stop: &stop };
         match has_simpler(&case, quantity).then(|| seen_with_twins(&case, &target, seconds, trial)) {
             None => without.push(of("it has no simpler model".to_owned())),
             Some(Ok(found)) => {
                 let mean = found.mean.mean;
                 let twins = left_out(&found, MOST * mean.abs(), mean);
-                rows.extend(twins.into_iter().map(|twin| Row { scene, quantity, mean, twin }));
+                rows.extend(twins.into_iter().map(|twin| SimplerModelRow { scene, quantity, mean, twin }));
             }
             Some(Err(error)) => without.push(of(first_line(&error.to_string()))),
         }
         meter.add(1.0);
     }
-    Ok(Made::of([table(&rows), not_compared(&without), summary(&rows, &without, seconds)]))
+    Ok(FinishedItem::of([table(&rows), not_compared(&without), summary(&rows, &without, seconds)]))
 }
 
-impl Row {
+impl SimplerModelRow {
     /// Upper bound of the change of the mean with 95 % confidence, in parts of it.
     fn most(&self) -> Option<f64> {
         self.twin.change.map(|[change, bar]| (change.abs() + bar) / self.mean.abs())
@@ -111,9 +111,9 @@ impl Row {
     }
 }
 
-fn table(rows: &[Row]) -> Frame {
-    let share = |it: &Row, at: usize| Some(100.0 * it.twin.change?[at] / it.mean.abs());
-    Rows::of(rows)
+fn table(rows: &[SimplerModelRow]) -> ResultFrame {
+    let share = |it: &SimplerModelRow, at: usize| Some(100.0 * it.twin.change?[at] / it.mean.abs());
+    FrameBuilder::of(rows)
         .text("scene", |it| it.scene)
         .text("quantity", |it| it.quantity)
         .text("without", |it| it.twin.name.clone())
@@ -127,19 +127,19 @@ fn table(rows: &[Row]) -> Frame {
         .frame("left-out", "Effect of simpler models")
 }
 
-fn not_compared(without: &[Without]) -> Frame {
-    Rows::of(without)
+fn not_compared(without: &[UncomparedScene]) -> ResultFrame {
+    FrameBuilder::of(without)
         .text("scene", |it| it.scene)
         .text("quantity", |it| it.quantity)
         .text("because", |it| it.why.clone())
         .frame("not-compared", "Scenes without a comparison")
 }
 
-fn summary(rows: &[Row], without: &[Without], seconds: f64) -> Frame {
+fn summary(rows: &[SimplerModelRow], without: &[UncomparedScene], seconds: f64) -> ResultFrame {
     let mut scenes: Vec<&str> = rows.iter().map(|it| it.scene).collect();
     scenes.dedup();
     let count = |verdict: &str| rows.iter().filter(|it| it.verdict().starts_with(verdict)).count();
-    Rows::of([()])
+    FrameBuilder::of([()])
         .count("scenes compared", |()| scenes.len())
         .count("scenes that are compared with nothing", |()| without.len())
         .count("twins", |()| rows.len())
@@ -153,7 +153,7 @@ fn summary(rows: &[Row], without: &[Without], seconds: f64) -> Frame {
 
 #[cfg(test)]
 mod tests {
-    use super::super::recommended::Need;
+    use super::super::recommended::NecessityVerdict;
     use super::*;
     use std::fs;
     use std::path::Path;
@@ -170,14 +170,14 @@ mod tests {
             (Some([0.1, 0.3]), "undecided"),
             (None, "not compared: it broke"),
         ] {
-            let twin = LeftOut {
+            let twin = SimplerModelReport {
                 name: "friction".to_owned(),
                 change,
                 cost: Some(0.8),
-                need: Need::Undecided,
+                need: NecessityVerdict::Undecided,
                 says: "not compared: it broke".to_owned(),
             };
-            let row = Row { scene: "a", quantity: "flow", mean: -2.0, twin };
+            let row = SimplerModelRow { scene: "a", quantity: "flow", mean: -2.0, twin };
             assert_eq!(row.verdict(), verdict, "{change:?}");
         }
     }

@@ -1,11 +1,11 @@
 //! Cheapest step and run time of a configuration for an error, and the number of runs that share this time.
 
-use super::bias::Off;
-use super::findings::{Findings, Way};
-use super::margin::Bars;
-use super::optimum::{Optimum, SHORTEST, Terms, UNBIASED, optimum};
-use crate::study::Case;
-use crate::study::trial::Known;
+use super::bias::BiasEstimate;
+use super::findings::{Findings, MeasuredConfiguration};
+use super::margin::PredictedBars;
+use super::optimum::{CostTerms, Optimum, SHORTEST, UNBIASED, optimum};
+use crate::study::StudyCase;
+use crate::study::trial::MeanEstimate;
 use stripmine_physics::averages::LIKELY_ENOUGH;
 use stripmine_physics::method::Every;
 use stripmine_physics::number::significant;
@@ -14,21 +14,26 @@ use stripmine_physics::number::significant;
 pub(super) const SAMPLES: f64 = LIKELY_ENOUGH;
 
 /// A configuration with its cheapest step and time for the error.
-pub(super) struct Weighed<'w> {
-    pub(super) way: &'w Way,
+pub(super) struct PlanCandidate<'w> {
+    pub(super) way: &'w MeasuredConfiguration,
     pub(super) optimum: Optimum,
 }
 
 /// Cheapest step and time of a configuration. Without a time step its bias is zero; with a step and no measured bias it is skipped.
-pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64) -> Option<Optimum> {
-    let terms = Terms {
+pub(super) fn weigh(
+    way: &MeasuredConfiguration,
+    findings: &Findings,
+    chance: &StatisticalError,
+    wanted: f64,
+) -> Option<Optimum> {
+    let terms = CostTerms {
         cost: way.cost?,
         rows: findings.row * findings.mean.rows(),
         transient: findings.mean.transient,
     };
     let time_for = |bar| chance.time_for(bar);
     match (way.step, way.bias) {
-        (None, _) => optimum(terms, (wanted, 1.0), |_, _| Off::default(), time_for),
+        (None, _) => optimum(terms, (wanted, 1.0), |_, _| BiasEstimate::default(), time_for),
         (Some(step), Some(bias)) => {
             let shortest = if bias.is_significant() || bias.creep > 0.0 { SHORTEST } else { UNBIASED };
             optimum(terms, (wanted, shortest), |part, time| bias.over(part * step, time), time_for)
@@ -38,8 +43,8 @@ pub(super) fn weigh(way: &Way, findings: &Findings, chance: &Chance, wanted: f64
 }
 
 /// Statistical error as a function of the total time of all runs.
-pub(super) struct Chance {
-    bars: Bars,
+pub(super) struct StatisticalError {
+    bars: PredictedBars,
     /// Square of the error bar of a mean over one unit of time.
     square: f64,
     /// Time of a whole run, where the mean is taken over whole runs (time).
@@ -53,15 +58,15 @@ impl Findings {
     }
 
     /// Statistical error as a function of time.
-    pub(super) fn chance(&self) -> Chance {
-        Chance::of(&self.mean, self.whole)
+    pub(super) fn chance(&self) -> StatisticalError {
+        StatisticalError::of(&self.mean, self.whole)
     }
 }
 
-impl Chance {
+impl StatisticalError {
     /// Statistical error of a mean; `whole` is the time of a whole run, where the mean is taken over whole runs (time).
-    pub(super) fn of(mean: &Known, whole: Option<f64>) -> Chance {
-        Chance { bars: mean.bars(), square: mean.square, whole }
+    pub(super) fn of(mean: &MeanEstimate, whole: Option<f64>) -> StatisticalError {
+        StatisticalError { bars: mean.bars(), square: mean.square, whole }
     }
 
     /// Total time of all runs after which the statistical error is at most `bar` (time).
@@ -81,7 +86,7 @@ impl Chance {
 }
 
 /// Distribution of the total time over runs.
-pub(super) struct Length {
+pub(super) struct RunLength {
     /// Total time averaged over, of all runs (time).
     pub(super) time: f64,
     pub(super) seeds: u64,
@@ -94,7 +99,11 @@ pub(super) struct Length {
 ///
 /// # Errors
 /// Error of a single run, where more are needed and the scene has only one start.
-pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Result<Length, f64> {
+pub(super) fn length(
+    case: &StudyCase,
+    best: &PlanCandidate<'_>,
+    findings: &Findings,
+) -> Result<RunLength, f64> {
     if let Some(time) = findings.whole {
         return whole_runs(case, best, findings, time);
     }
@@ -102,7 +111,12 @@ pub(super) fn length(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Re
 }
 
 /// As many whole runs as the error requires.
-fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -> Result<Length, f64> {
+fn whole_runs(
+    case: &StudyCase,
+    best: &PlanCandidate<'_>,
+    findings: &Findings,
+    time: f64,
+) -> Result<RunLength, f64> {
     let seeds = (best.optimum.time / time).ceil().max(1.0);
     let chance = (findings.mean.square / time).sqrt();
     if seeds > 1.0 && case.prepared.seed.is_none() {
@@ -112,7 +126,7 @@ fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -
     let threads = findings.threads as f64;
     let (together, one_thread) = if seeds > 1.0 { (threads, findings.one_thread) } else { (1.0, 1.0) };
     let rounds = (seeds / together).ceil();
-    Ok(Length {
+    Ok(RunLength {
         time: seeds * time,
         seeds: seeds as u64,
         seconds: rounds * (findings.start + findings.of_rows(time) + cost * one_thread * time),
@@ -120,7 +134,7 @@ fn whole_runs(case: &Case, best: &Weighed<'_>, findings: &Findings, time: f64) -
     })
 }
 
-fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> Length {
+fn length_of_stretches(case: &StudyCase, best: &PlanCandidate<'_>, findings: &Findings) -> RunLength {
     let transient = findings.mean.transient;
     // Each run needs an error bar of its own. A constant quantity needs the scene's own run time, or some rows.
     let first = match case.prepared.schedule.rows {
@@ -141,11 +155,11 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
             "the mean from another start differs by {}: a conserved quantity, such as the energy, does not average out, so the plan applies to this start",
             significant(difference, 2)
         );
-        return Length { time, seeds: 1, seconds: together, why };
+        return RunLength { time, seeds: 1, seconds: together, why };
     }
     let apart = seconds(time / threads + transient, cost * findings.one_thread);
     if findings.threads > 1 && apart < 0.95 * together && time / threads > transient.max(least) {
-        return Length {
+        return RunLength {
             time,
             seeds: findings.threads as u64,
             seconds: apart,
@@ -162,5 +176,5 @@ fn length_of_stretches(case: &Case, best: &Weighed<'_>, findings: &Findings) -> 
     } else {
         format!("several runs would each repeat the transient ({})", significant(transient, 2))
     };
-    Length { time, seeds: 1, seconds: together, why }
+    RunLength { time, seeds: 1, seconds: together, why }
 }

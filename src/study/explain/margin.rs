@@ -1,6 +1,6 @@
 //! Run length for a planned error bar. The variance that a plan uses is itself an estimate, and so is that of the run, so lengths contain a margin.
 
-use crate::study::trial::Known;
+use crate::study::trial::MeanEstimate;
 use stripmine_physics::averages::{MOST_WAVES, variance_ratio};
 
 /// Probability that an error bar is at most as large as planned; equal to the confidence of error bars themselves.
@@ -15,7 +15,7 @@ const CUT_OFF: f64 = 1.15;
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// Error bars of runs of any length, predicted from trials.
-pub(crate) struct Bars {
+pub(crate) struct PredictedBars {
     /// Square of the error bar of a mean over one unit of time.
     square: f64,
     /// For each possible number of waves of an error bar: the time from which it applies (time), and the factor by which the square of the error bar
@@ -29,13 +29,14 @@ struct WaveLevel {
     margin: f64,
 }
 
-impl Known {
+impl MeanEstimate {
     /// Error bars of runs of any length.
     ///
     /// The square of an error bar is t² s² over the time, with t of Student's distribution. The variance s² of the trials and that of the run, each a
     /// χ² over its degrees of freedom, have a ratio that follows the F distribution.
-    pub(crate) fn bars(&self) -> Bars {
-        let all = |margin| Bars { square: self.square, levels: vec![WaveLevel { from: 0.0, margin }] };
+    pub(crate) fn bars(&self) -> PredictedBars {
+        let all =
+            |margin| PredictedBars { square: self.square, levels: vec![WaveLevel { from: 0.0, margin }] };
         if self.square == 0.0 || !self.freedoms.is_finite() {
             return all(1.0);
         }
@@ -48,7 +49,7 @@ impl Known {
             from: self.from(waves as f64),
             margin: longer * t_squared(waves as f64) / of_trials * variance_ratio(SURE, waves as f64, seen),
         };
-        Bars { square: self.square, levels: (1..=MOST_WAVES).map(level).collect() }
+        PredictedBars { square: self.square, levels: (1..=MOST_WAVES).map(level).collect() }
     }
 
     /// Time from which an error bar consists of some waves (time).
@@ -64,7 +65,7 @@ impl Known {
     }
 }
 
-impl Bars {
+impl PredictedBars {
     /// Upper bound, with 95 % confidence, of the error bar of a mean over some time.
     pub(crate) fn over(&self, time: f64) -> f64 {
         // A constant is known from any time.
@@ -91,9 +92,9 @@ impl Bars {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::trial::Pace;
+    use crate::study::trial::RowPace;
     use std::f64::consts::PI;
-    use stripmine_physics::averages::{LIKELY_ENOUGH, Outcome, estimated, student};
+    use stripmine_physics::averages::{AverageOutcome, LIKELY_ENOUGH, estimated, student};
 
     /// Error bars of independent normal values with a variance of 1, computed as in averages: from 1.2 √n waves, at most 16, whose squares are
     /// independent. A plan is made from some values, and the error bar of another run of the planned length should be as small as requested. Each
@@ -154,10 +155,10 @@ mod tests {
                 let all: Vec<f64> = (0..(each * samples).ceil() as usize).map(&mut next).collect();
                 let seen: Vec<f64> = all.into_iter().skip(every - 1).step_by(every).collect();
                 match estimated(&seen, 0.0, every as f64) {
-                    Outcome::Mean(estimate) => {
+                    AverageOutcome::Mean(estimate) => {
                         let ends = (1..).map(|end| (end * every) as f64);
                         let series: Vec<[f64; 2]> = ends.zip(seen).map(|(end, value)| [end, value]).collect();
-                        Some(Known::of(estimate, &series, Some(Pace { cost: 1.0, row: 0.0 })))
+                        Some(MeanEstimate::of(estimate, &series, Some(RowPace { cost: 1.0, row: 0.0 })))
                     }
                     _ => None,
                 }
@@ -179,9 +180,9 @@ mod tests {
         }
     }
 
-    fn known(square: f64, freedoms: f64, bar: f64) -> Known {
+    fn known(square: f64, freedoms: f64, bar: f64) -> MeanEstimate {
         let span = square / (bar * bar);
-        Known { bar, square, span, waves: freedoms, freedoms, ..Known::exactly(0.0) }
+        MeanEstimate { bar, square, span, waves: freedoms, freedoms, ..MeanEstimate::exactly(0.0) }
     }
 
     /// The time for an error bar reaches it with little excess, and so does any longer time; margins are factors above 1 that fall with the time.

@@ -1,11 +1,11 @@
 //! Measurement of the mean and its statistical error, by the cheapest configuration at the longest usable step.
 
 use super::ExplainError;
-use super::findings::{HALVINGS, SHARES, Way, Work};
-use crate::study::trial::{Known, Sample, Span, any_number};
+use super::findings::{HALVINGS, MeasuredConfiguration, SHARES, SceneTrials};
+use crate::study::trial::{MeanEstimate, SampleSpan, TrialSample, any_number};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::Outcome;
-use stripmine_physics::method::Decides;
+use stripmine_physics::averages::AverageOutcome;
+use stripmine_physics::method::ChoiceEffect;
 use stripmine_physics::particles::Particles;
 
 /// Fewest states from which runs are compared.
@@ -29,8 +29,8 @@ const DEAD: f64 = 1e-3;
 
 /// The mean, as measured.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Mean {
-    pub(super) known: Known,
+pub(super) struct TrialMean {
+    pub(super) known: MeanEstimate,
     /// Label of the configuration.
     pub(super) way: String,
     /// Wall seconds until the first step, and of a row.
@@ -53,9 +53,9 @@ pub(super) struct Mean {
     pub(super) rows: Vec<Vec<f64>>,
 }
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Measures the mean with the cheapest configuration. Configurations that fail or raise warnings get shorter steps, or are dropped.
-    pub(super) fn mean(&mut self, ways: &mut [Way]) -> Result<Mean, ExplainError> {
+    pub(super) fn mean(&mut self, ways: &mut [MeasuredConfiguration]) -> Result<TrialMean, ExplainError> {
         let mut seconds = self.shares[1] * self.seconds;
         let kept_back = self.shares[2] * self.seconds;
         let mut enough = self.for_whole_run(&ways[0]);
@@ -76,7 +76,7 @@ impl Work<'_> {
                 seconds = self.to_end(&best, seconds);
             }
             let share = if is_scout { SCOUT * seconds } else { seconds };
-            let span = end.map_or(Span::Seconds(share), |end| Span::Time(end, Some(share)));
+            let span = end.map_or(SampleSpan::Seconds(share), |end| SampleSpan::Time(end, Some(share)));
             let sample = match self.sampled_over(&best, best.step, span) {
                 Ok(sample) => sample,
                 Err(_) if halvings == ALIKE && end.is_none() && self.goes_beyond(&best, share) => {
@@ -129,12 +129,12 @@ impl Work<'_> {
     }
 
     /// True if a run of some seconds extends beyond the end of the scene's own run.
-    fn goes_beyond(&self, way: &Way, seconds: f64) -> bool {
+    fn goes_beyond(&self, way: &MeasuredConfiguration, seconds: f64) -> bool {
         self.case.duration().zip(way.cost).is_some_and(|(time, cost)| cost * time < seconds)
     }
 
     /// Seconds of a sample, extended to the end of the scene's own run where that is near.
-    fn to_end(&self, way: &Way, seconds: f64) -> f64 {
+    fn to_end(&self, way: &MeasuredConfiguration, seconds: f64) -> f64 {
         let whole = self.case.duration().zip(way.cost).map(|(time, cost)| BEYOND * cost * time);
         whole.filter(|&whole| seconds < whole && whole <= LONGER * seconds).unwrap_or(seconds)
     }
@@ -147,22 +147,23 @@ impl Work<'_> {
     /// Measures the mean over whole runs, with states along the sample that showed the quantity changing.
     fn over_whole_runs(
         &self,
-        way: &Way,
-        sample: Sample,
+        way: &MeasuredConfiguration,
+        sample: TrialSample,
         time: f64,
         seconds: f64,
-    ) -> Result<Mean, ExplainError> {
+    ) -> Result<TrialMean, ExplainError> {
         let runs = self.whole_runs(&way.overrides, way.step, (time, Some(&sample)), seconds);
         let known = runs.and_then(|runs| Ok((runs.known?, runs.cost)));
         let (known, cost) = known.map_err(|why| self.no_mean(why, None))?;
-        Ok(Mean { cost, ..found(way, sample, known) })
+        Ok(TrialMean { cost, ..found(way, sample, known) })
     }
 
     /// Halves the step of every configuration with the integrator of one that failed or raised a warning.
-    pub(super) fn shorten(&self, ways: &mut [Way], of: &Way, why: &str) {
+    pub(super) fn shorten(&self, ways: &mut [MeasuredConfiguration], of: &MeasuredConfiguration, why: &str) {
         let choice = self.choice(of);
-        let alike =
-            |way: &&mut Way| way.dropped.is_none() && self.choice(way).agrees(&choice, Decides::Order);
+        let alike = |way: &&mut MeasuredConfiguration| {
+            way.dropped.is_none() && self.choice(way).agrees(&choice, ChoiceEffect::Order)
+        };
         for way in ways.iter_mut().filter(alike) {
             way.bound = Some(why.to_owned());
             match way.step {
@@ -177,18 +178,23 @@ impl Work<'_> {
     }
 
     /// Drops every configuration with the precision and integrator of one in which particles stop moving.
-    fn drop_digits(&self, ways: &mut [Way], of: &Way, why: &str) {
+    fn drop_digits(&self, ways: &mut [MeasuredConfiguration], of: &MeasuredConfiguration, why: &str) {
         let choice = self.choice(of);
         for way in ways.iter_mut() {
             let own = self.choice(way);
-            if own.agrees(&choice, Decides::Order) && own.agrees(&choice, Decides::Digits) {
+            if own.agrees(&choice, ChoiceEffect::Order) && own.agrees(&choice, ChoiceEffect::Digits) {
                 way.dropped = Some(why.to_owned());
             }
         }
     }
 
     /// Rescales all costs by that of a run, which differs from the cost of its first stretches.
-    fn slow_down(&self, ways: &mut [Way], best: &Way, sample: &Sample) {
+    fn slow_down(
+        &self,
+        ways: &mut [MeasuredConfiguration],
+        best: &MeasuredConfiguration,
+        sample: &TrialSample,
+    ) {
         let slower = sample.cost / best.cost.unwrap_or(sample.cost);
         for way in ways.iter_mut() {
             way.cost = way.cost.map(|cost| slower * cost);
@@ -200,28 +206,28 @@ impl Work<'_> {
     }
 
     /// Wall seconds of the scene as it stands, if known.
-    pub(super) fn run_as_it_stands(&self, ways: &[Way]) -> Option<f64> {
+    pub(super) fn run_as_it_stands(&self, ways: &[MeasuredConfiguration]) -> Option<f64> {
         let way = ways.iter().find(|way| way.label == self.case.own.label())?;
         let longer = way.step.zip(self.case.step()).map_or(1.0, |(longest, own)| longest / own);
         Some(way.cost? * longer * self.case.duration()?)
     }
 
     /// Trial time in which a run is as long as the scene's own (s); none where its end is not a time, or its cost is unknown.
-    fn for_whole_run(&self, way: &Way) -> Option<f64> {
+    fn for_whole_run(&self, way: &MeasuredConfiguration) -> Option<f64> {
         Some(trials_for(self.case.duration()? * way.cost?))
     }
 
     /// Trial time that is long enough for a mean (s), estimated from a sample that was too short.
-    fn enough(&self, sample: &Sample) -> Option<f64> {
+    fn enough(&self, sample: &TrialSample) -> Option<f64> {
         let time = match sample.outcome {
-            Outcome::TooShort { enough_at, .. } => enough_at,
+            AverageOutcome::TooShort { enough_at, .. } => enough_at,
             // The end of the change is unknown before the end of the scene's own run.
-            Outcome::Changing { .. } if !sample.comes_beyond_end => {
+            AverageOutcome::Changing { .. } if !sample.comes_beyond_end => {
                 self.case.duration()?.max(LONGER * sample.time)
             }
             // Whole runs have means of their own.
             _ if self.target.window.is_some() => super::whole::RUNS[0] as f64 * self.whole_time()?,
-            Outcome::Changing { .. } => super::whole::RUNS[0] as f64 * self.case.duration()?,
+            AverageOutcome::Changing { .. } => super::whole::RUNS[0] as f64 * self.case.duration()?,
             _ => return None,
         };
         // The present trials were too short, whatever their cost per unit of time.
@@ -229,14 +235,14 @@ impl Work<'_> {
     }
 }
 
-fn found(way: &Way, sample: Sample, known: Known) -> Mean {
+fn found(way: &MeasuredConfiguration, sample: TrialSample, known: MeanEstimate) -> TrialMean {
     let after = |states: &&(f64, Particles)| states.0 >= known.transient;
     // If hardly any state is after the transient, states before it are used too.
     let first = match sample.states.iter().filter(after).count() {
         0..FEWEST => 0,
         count => sample.states.len() - count,
     };
-    Mean {
+    TrialMean {
         known,
         way: way.label.clone(),
         start: sample.start,
@@ -251,9 +257,9 @@ fn found(way: &Way, sample: Sample, known: Known) -> Mean {
 }
 
 /// True if the mean is hardly known: the run may still be in its transient.
-fn is_hardly_known(sample: &Sample) -> bool {
+fn is_hardly_known(sample: &TrialSample) -> bool {
     match sample.outcome {
-        Outcome::TooShort { estimate, .. } => {
+        AverageOutcome::TooShort { estimate, .. } => {
             estimate.is_none_or(|estimate| estimate.bar > ROUGH * estimate.mean.abs())
         }
         _ => false,
@@ -266,7 +272,7 @@ fn trials_for(seconds: f64) -> f64 {
 }
 
 /// True if a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean would differ.
-fn changes(sample: &Sample) -> bool {
+fn changes(sample: &TrialSample) -> bool {
     if !sample.comes_beyond_end {
         return false;
     }
@@ -275,7 +281,7 @@ fn changes(sample: &Sample) -> bool {
     let last = &sample.series[sample.series.len() * 3 / 4..];
     let has_died_out = !last.is_empty() && last.iter().all(|[_, value]| value.abs() < DEAD * largest);
     match sample.outcome {
-        Outcome::Changing { .. } => true,
+        AverageOutcome::Changing { .. } => true,
         _ => {
             has_died_out || sample.known().is_some_and(|known| known.mean.abs() + known.bar < DEAD * largest)
         }

@@ -38,21 +38,21 @@ mod unreached;
 mod whole;
 mod words;
 
-pub(crate) use kept::{Kept, KeptError};
+pub(crate) use kept::{PlanCache, PlanCacheError};
 use plan::in_unit;
-pub(crate) use recommended::Plan;
+pub(crate) use recommended::RunPlan;
 pub(crate) use tuned::tuned;
 pub(crate) use unreached::Unreached;
 pub(crate) use words::{page, seconds, with_unit};
 
-use super::Case;
+use super::StudyCase;
 use crate::results::{Journal, JournalError};
-use crate::study::trial::Trial;
+use crate::study::trial::TrialControl;
 use findings::Findings;
 use seen::{planned, seen};
-use stripmine_physics::method::{Kind, Quantity};
+use stripmine_physics::method::{ObservedQuantity, QuantityKind};
 use stripmine_physics::number::significant;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Width;
 
 /// Longest total time of the trials (s): by default, and with `--patient`.
@@ -63,8 +63,8 @@ pub(crate) const LIMIT: f64 = 3600.0;
 
 /// Quantity and error that a plan is asked for.
 #[derive(Clone, Debug)]
-pub(crate) struct Target {
-    pub quantity: Quantity,
+pub(crate) struct PlanTarget {
+    pub quantity: ObservedQuantity,
     /// Index among the observed quantities.
     pub place: usize,
     /// Target error of the mean; none where the scene's own values are to be judged.
@@ -136,7 +136,7 @@ pub(crate) enum ExplainError {
     )]
     NothingKept,
     #[error(transparent)]
-    Kept(#[from] KeptError),
+    Kept(#[from] PlanCacheError),
     /// The journal of trials failed.
     #[error(transparent)]
     Journal(#[from] JournalError),
@@ -170,12 +170,12 @@ fn longer_trials(enough: Option<f64>, run: Option<f64>) -> String {
 }
 
 impl Reported for ExplainError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
-            ExplainError::NoSuchQuantity { .. } | ExplainError::NoWindow(_) => Class::Usage,
+            ExplainError::NoSuchQuantity { .. } | ExplainError::NoWindow(_) => ErrorClass::Usage,
             ExplainError::Kept(error) => error.class(),
             ExplainError::Journal(error) => error.class(),
-            _ => Class::Precondition,
+            _ => ErrorClass::Precondition,
         }
     }
 
@@ -188,35 +188,39 @@ impl Reported for ExplainError {
     }
 }
 
-impl Target {
+impl PlanTarget {
     /// Returns the target for a named quantity, or for the first one with a mean.
     ///
     /// # Errors
     /// [`ExplainError::NoSuchQuantity`]
-    pub(crate) fn of(case: &Case, name: Option<&str>, error: Option<Width>) -> Result<Target, ExplainError> {
+    pub(crate) fn of(
+        case: &StudyCase,
+        name: Option<&str>,
+        error: Option<Width>,
+    ) -> Result<PlanTarget, ExplainError> {
         let quantities = case.entry.quantities;
-        let is_judged = |quantity: &&Quantity| quantity.kind != Kind::Time;
+        let is_judged = |quantity: &&ObservedQuantity| quantity.kind != QuantityKind::Time;
         let known: Vec<&'static str> = quantities.iter().filter(is_judged).map(|it| it.name).collect();
         let first = || {
             let of_trials = case.entry.trials.and_then(|trials| trials.observables.first().copied());
-            let of_intervals = quantities.iter().find(|it| it.kind == Kind::Interval);
+            let of_intervals = quantities.iter().find(|it| it.kind == QuantityKind::Interval);
             of_trials.or(of_intervals.map(|it| it.name)).unwrap_or_default()
         };
         let name = name.unwrap_or_else(first);
         let place = quantities.iter().position(|it| it.name == name && is_judged(&it));
         let place = place.ok_or_else(|| ExplainError::NoSuchQuantity { name: name.to_owned(), known })?;
-        Ok(Target { quantity: quantities[place], place, error, within: None, limit: LIMIT, window: None })
+        Ok(PlanTarget { quantity: quantities[place], place, error, within: None, limit: LIMIT, window: None })
     }
 
     /// Restricts the target to a time window, if one is given.
     ///
     /// # Errors
     /// [`ExplainError::NoWindow`] if it does not end after it begins.
-    pub(crate) fn over(self, window: Option<&[f64]>) -> Result<Target, ExplainError> {
+    pub(crate) fn over(self, window: Option<&[f64]>) -> Result<PlanTarget, ExplainError> {
         match window {
             None => Ok(self),
             Some(&[from, to]) if 0.0 <= from && from < to && to.is_finite() => {
-                Ok(Target { window: Some([from, to]), ..self })
+                Ok(PlanTarget { window: Some([from, to]), ..self })
             }
             Some(window) => Err(ExplainError::NoWindow(window.to_vec())),
         }
@@ -224,7 +228,7 @@ impl Target {
 
     /// True if the quantity should be conserved: its error is then the largest deviation from its first value.
     pub(crate) fn is_kept(&self) -> bool {
-        self.quantity.kind == Kind::Kept
+        self.quantity.kind == QuantityKind::Kept
     }
 }
 
@@ -234,13 +238,13 @@ impl Target {
 /// # Errors
 /// [`ExplainError`]
 pub(crate) fn explain(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     seconds: f64,
-    kept: &Kept,
-    trial: Trial<'_>,
-    notice: &dyn Fn(&KeptError),
-) -> Result<Plan, ExplainError> {
+    kept: &PlanCache,
+    trial: TrialControl<'_>,
+    notice: &dyn Fn(&PlanCacheError),
+) -> Result<RunPlan, ExplainError> {
     let key = kept.key(case, target);
     let recalled = kept.recall(case, &key, seconds).unwrap_or_else(|error| {
         notice(&error);
@@ -282,16 +286,19 @@ const WEIGHED: [f64; 2] = [1e-12, 10.0];
 /// # Errors
 /// [`ExplainError::TooQuick`], where no plan is fast enough.
 fn within_seconds(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     findings: &Findings,
     origin: &str,
     within: f64,
-) -> Result<Plan, ExplainError> {
+) -> Result<RunPlan, ExplainError> {
     let scale = if target.is_kept() { 1.0 } else { findings.mean.mean.abs() };
     let asking = |error: f64| {
-        let target =
-            Target { error: Some(Width::Absolute(error * scale)), limit: f64::INFINITY, ..target.clone() };
+        let target = PlanTarget {
+            error: Some(Width::Absolute(error * scale)),
+            limit: f64::INFINITY,
+            ..target.clone()
+        };
         planned(case, &target, findings, origin)
     };
     let [mut low, mut high] = WEIGHED;

@@ -1,10 +1,10 @@
 //! Cheapest step and run length for a target error.
 
-use super::bias::Off;
+use super::bias::BiasEstimate;
 
 /// Costs of a configuration.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Terms {
+pub(crate) struct CostTerms {
     /// Wall seconds of a unit of time at the longest step.
     pub(crate) cost: f64,
     /// Wall seconds of the rows of a unit of time.
@@ -24,7 +24,7 @@ pub(crate) struct Optimum {
     /// The step, in parts of the longest.
     pub part: f64,
     /// Bias at the step.
-    pub(crate) bias: Off,
+    pub(crate) bias: BiasEstimate,
     /// Time averaged over (time).
     pub time: f64,
     /// Wall seconds.
@@ -44,9 +44,9 @@ pub(super) const UNBIASED: f64 = 0.25;
 /// A shorter step costs more per unit of time and has less bias, which leaves more of the error to statistics and so needs less time. A bias that
 /// grows with the time needs a longer run, which is found by iteration from below.
 pub(crate) fn optimum(
-    terms: Terms,
+    terms: CostTerms,
     (error, shortest): (f64, f64),
-    bias: impl Fn(f64, f64) -> Off,
+    bias: impl Fn(f64, f64) -> BiasEstimate,
     time_for: impl Fn(f64) -> f64,
 ) -> Option<Optimum> {
     let settled = |part: f64| {
@@ -74,9 +74,9 @@ pub(crate) fn optimum(
 mod tests {
     use super::*;
 
-    const TERMS: Terms = Terms { cost: 2.0, rows: 0.0, transient: 0.0 };
+    const TERMS: CostTerms = CostTerms { cost: 2.0, rows: 0.0, transient: 0.0 };
 
-    fn best(terms: Terms, bias: impl Fn(f64) -> Off) -> Option<Optimum> {
+    fn best(terms: CostTerms, bias: impl Fn(f64) -> BiasEstimate) -> Option<Optimum> {
         optimum(terms, (0.1, SHORTEST), |part, _| bias(part), |chance| 4.0 / (chance * chance))
     }
 
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn growing_bias_needs_a_shorter_step() {
         let of = |creep: f64, shortest: f64| {
-            let bias = |part: f64, time: f64| Off::exactly(creep * part * time);
+            let bias = |part: f64, time: f64| BiasEstimate::exactly(creep * part * time);
             optimum(TERMS, (0.1, shortest), bias, |chance| 4.0 / (chance * chance))
         };
         let found = of(2e-5, 1.0).unwrap();
@@ -97,14 +97,14 @@ mod tests {
     /// Without bias the longest step is best; with b·part the cost 1/(part (e − b part)²) is least at part = e/(3 b): a third of the error.
     #[test]
     fn linear_bias_takes_a_third_of_the_error() {
-        let free = best(TERMS, |_| Off::default()).unwrap();
+        let free = best(TERMS, |_| BiasEstimate::default()).unwrap();
         assert!(free.part == 1.0 && (free.time - 400.0).abs() < 1e-9 && (free.seconds - 800.0).abs() < 1e-9);
-        let bound = best(TERMS, |part| Off::exactly(0.3 * part)).unwrap();
+        let bound = best(TERMS, |part| BiasEstimate::exactly(0.3 * part)).unwrap();
         assert!((bound.bias.shift / 0.1 - 1.0 / 3.0).abs() < 0.05, "{bound:?}");
         // A bias that does not fall with the step is never reached.
-        assert_eq!(best(TERMS, |_| Off::exactly(0.1)), None);
+        assert_eq!(best(TERMS, |_| BiasEstimate::exactly(0.1)), None);
         // A long transient favours a longer step.
-        let long = Terms { transient: 1e5, ..TERMS };
-        assert!(best(long, |part| Off::exactly(0.3 * part)).unwrap().part > bound.part);
+        let long = CostTerms { transient: 1e5, ..TERMS };
+        assert!(best(long, |part| BiasEstimate::exactly(0.3 * part)).unwrap().part > bound.part);
     }
 }

@@ -1,15 +1,15 @@
 //! Choice of the plan from the measurements.
 
-use super::Target;
-use super::bias::Off;
+use super::PlanTarget;
+use super::bias::BiasEstimate;
 use super::decisions::{decisions, left_out};
-use super::findings::{Findings, Way};
-use super::lengths::{Chance, Weighed, length, weigh};
+use super::findings::{Findings, MeasuredConfiguration};
+use super::lengths::{PlanCandidate, StatisticalError, length, weigh};
 use super::optimum::SHORTEST;
-use super::recommended::{Expected, Interval, Own, Plan};
+use super::recommended::{ExpectedError, LikelyRange, OwnResult, RunPlan};
 use super::unreached::Unreached;
 use crate::study::trial::ROWS;
-use crate::study::{Case, Choice, TIE, rounded};
+use crate::study::{SettingChoice, StudyCase, TIE, rounded};
 use stripmine_physics::method::Every;
 use stripmine_physics::scene::{Overrides, STEPS, THERMO_EVERY, TIME, Width};
 
@@ -23,11 +23,11 @@ const FEWEST_ROWS: f64 = 100.0;
 /// # Errors
 /// [`Unreached`], where no configuration reaches the target.
 pub(crate) fn plan(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     findings: &Findings,
     origin: &str,
-) -> Result<Plan, Unreached> {
+) -> Result<RunPlan, Unreached> {
     let mean = &findings.mean;
     let own_way = findings.ways.iter().find(|way| way.label == case.own.label());
     let own = own_way.and_then(|way| own(case, way, findings));
@@ -35,19 +35,19 @@ pub(crate) fn plan(
     // Without a target error the plan matches the error of the scene's own values.
     let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);
     let wanted = error.or(of_own).unwrap_or(0.01 * mean.mean.abs());
-    let usable = |way: &&Way| way.cost.is_some() && way.dropped.is_none();
+    let usable = |way: &&MeasuredConfiguration| way.cost.is_some() && way.dropped.is_none();
     let chance = findings.chance();
-    let mut weighed: Vec<Weighed<'_>> = findings
+    let mut weighed: Vec<PlanCandidate<'_>> = findings
         .ways
         .iter()
         .filter(usable)
-        .filter_map(|way| Some(Weighed { way, optimum: weigh(way, findings, &chance, wanted)? }))
+        .filter_map(|way| Some(PlanCandidate { way, optimum: weigh(way, findings, &chance, wanted)? }))
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
     let Some(best) = weighed.first() else {
         // Only the bias at the shortest step considered is left.
-        let least = |way: &Way| Some(way.bias?.at(SHORTEST * way.step?).shift);
+        let least = |way: &MeasuredConfiguration| Some(way.bias?.at(SHORTEST * way.step?).shift);
         let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
         return Err(Unreached { known: mean.bar, ..Unreached::of(wanted, least) });
     };
@@ -61,9 +61,9 @@ pub(crate) fn plan(
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
     let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + mean.transient);
-    let expected = Expected::of(best.optimum.bias, chance.over(length.time));
-    let seconds = Interval::within(length.seconds, TIME_WITHIN);
-    Ok(Plan {
+    let expected = ExpectedError::of(best.optimum.bias, chance.over(length.time));
+    let seconds = LikelyRange::within(length.seconds, TIME_WITHIN);
+    Ok(RunPlan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
         way: best.way.label.clone(),
@@ -92,11 +92,11 @@ pub(crate) fn plan(
 
 /// Puts first, among configurations as cheap within timing accuracy, the scene's own, or else the first in the order of the settings: longer trials
 /// then lead to the same plan.
-pub(super) fn prefer(weighed: &mut [Weighed<'_>], case: &Case) {
+pub(super) fn prefer(weighed: &mut [PlanCandidate<'_>], case: &StudyCase) {
     let Some(cheapest) = weighed.first().map(|it| it.optimum.seconds) else { return };
     let own = case.own.label();
-    let order: Vec<String> = Choice::all(case.entry.axes).iter().map(Choice::label).collect();
-    let place = |it: &Weighed<'_>| {
+    let order: Vec<String> = SettingChoice::all(case.entry.axes).iter().map(SettingChoice::label).collect();
+    let place = |it: &PlanCandidate<'_>| {
         let label = &it.way.label;
         (*label != own, order.iter().position(|known| known == label).unwrap_or(usize::MAX))
     };
@@ -107,15 +107,15 @@ pub(super) fn prefer(weighed: &mut [Weighed<'_>], case: &Case) {
 }
 
 /// Wall seconds of a run in each phase.
-pub(super) fn phases(best: &Weighed<'_>, time: f64) -> Vec<(String, f64)> {
+pub(super) fn phases(best: &PlanCandidate<'_>, time: f64) -> Vec<(String, f64)> {
     let scaled = |(name, cost): &(String, f64)| (name.clone(), cost / best.optimum.part * time);
     best.way.phases.iter().map(scaled).collect()
 }
 
 /// Returns the overrides of a plan: its step, run time and time between rows (time; 0 where that does not matter).
 pub(super) fn overrides(
-    case: &Case,
-    way: &Way,
+    case: &StudyCase,
+    way: &MeasuredConfiguration,
     step: Option<f64>,
     (time, every): (Option<f64>, f64),
 ) -> Overrides {
@@ -145,7 +145,7 @@ pub(super) fn overrides(
 }
 
 /// Time between the rows of a scene at a step (time); infinite where it writes none.
-pub(super) fn own_rows(case: &Case, step: Option<f64>) -> f64 {
+pub(super) fn own_rows(case: &StudyCase, step: Option<f64>) -> f64 {
     match case.prepared.schedule.rows {
         Every::Steps(steps) => step.map_or(f64::INFINITY, |step| steps as f64 * step),
         Every::Time(time) => time,
@@ -167,11 +167,11 @@ pub(crate) fn in_unit(width: Width, mean: f64) -> f64 {
     }
 }
 
-fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
+fn own(case: &StudyCase, way: &MeasuredConfiguration, findings: &Findings) -> Option<OwnResult> {
     let (time, step) = (case.duration()?, case.step());
     let cost = way.cost? * way.step.zip(step).map_or(1.0, |(longest, own)| longest / own);
     // The bias is that of the scene's own integrator, in any precision that was measured.
-    let is_alike = |it: &&Way| {
+    let is_alike = |it: &&MeasuredConfiguration| {
         it.settings.iter().any(|(name, setting)| {
             name == "integrator" && way.settings.contains(&(name.clone(), setting.clone()))
         })
@@ -179,13 +179,14 @@ fn own(case: &Case, way: &Way, findings: &Findings) -> Option<Own> {
     let bias = findings.ways.iter().filter(is_alike).find_map(|it| it.bias);
     let bias = match (bias, step) {
         (Some(bias), Some(step)) => bias.over(step, time),
-        (None, Some(_)) => Off::exactly(f64::NAN),
-        (_, None) => Off::default(),
+        (None, Some(_)) => BiasEstimate::exactly(f64::NAN),
+        (_, None) => BiasEstimate::default(),
     };
     let left = time - findings.mean.transient;
     let every = own_rows(case, step);
     let known = findings.mean.looked_at(every);
-    let chance = if left > 0.0 { Chance::of(&known, findings.whole).over(left) } else { f64::INFINITY };
+    let chance =
+        if left > 0.0 { StatisticalError::of(&known, findings.whole).over(left) } else { f64::INFINITY };
     let seconds = findings.start + findings.row * (time / every) + cost * time;
-    Some(Own { seconds, error: Expected::of(bias, chance) })
+    Some(OwnResult { seconds, error: ExpectedError::of(bias, chance) })
 }

@@ -1,21 +1,21 @@
 //! Contents of a plan.
 
-use super::bias::Off;
+use super::bias::BiasEstimate;
 use serde::Serialize;
 use stripmine_physics::scene::Overrides;
 
 /// A number with its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Interval {
+pub(crate) struct LikelyRange {
     pub least: f64,
     pub(crate) likely: f64,
     pub most: f64,
 }
 
-impl Interval {
+impl LikelyRange {
     /// Interval within a factor of a likely value.
-    pub(super) fn within(likely: f64, factor: f64) -> Interval {
-        Interval { least: likely / factor, likely, most: likely * factor }
+    pub(super) fn within(likely: f64, factor: f64) -> LikelyRange {
+        LikelyRange { least: likely / factor, likely, most: likely * factor }
     }
 }
 
@@ -26,12 +26,12 @@ pub(crate) struct Decision {
     pub what: String,
     pub(crate) chosen: String,
     pub(crate) why: String,
-    pub(crate) beside: Vec<Beside>,
+    pub(crate) beside: Vec<Alternative>,
 }
 
 /// An alternative that is not recommended.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Beside {
+pub(crate) struct Alternative {
     pub name: String,
     /// Wall time over that of the recommendation, for the same error; none where the error is not reached.
     pub(crate) cost: Option<f64>,
@@ -41,7 +41,7 @@ pub(crate) struct Beside {
 
 /// Command, expected result and reasons of a plan.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Plan {
+pub(crate) struct RunPlan {
     /// The scene, as named on a command line.
     pub scene: String,
     pub method: &'static str,
@@ -56,9 +56,9 @@ pub(crate) struct Plan {
     pub error: Option<f64>,
     pub(crate) decisions: Vec<Decision>,
     /// Expected error, in the quantity's unit.
-    pub expected: Expected,
+    pub expected: ExpectedError,
     /// Wall seconds.
-    pub seconds: Interval,
+    pub seconds: LikelyRange,
     /// Memory of the runs (bytes).
     pub memory: u64,
     /// Wall seconds of a run in each phase, by name.
@@ -80,56 +80,56 @@ pub(crate) struct Plan {
     /// Overrides that turn the scene into the plan.
     pub overrides: Overrides,
     /// Cost and error of the scene's own values.
-    pub own: Option<Own>,
+    pub own: Option<OwnResult>,
     /// Simpler models of the scene.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<SimplerModelReport>,
     /// Origin of the measurements.
     pub origin: String,
 }
 
 /// Cost and error of the scene's own values.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Own {
+pub(crate) struct OwnResult {
     /// Wall seconds.
     pub seconds: f64,
     /// Expected error, in the quantity's unit.
-    pub error: Expected,
+    pub error: ExpectedError,
 }
 
 /// Parts of an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Expected {
+pub(crate) struct ExpectedError {
     /// Bias from the step.
-    pub(crate) bias: Off,
+    pub(crate) bias: BiasEstimate,
     /// Half the width of the 95 % interval of a mean of this length.
     pub(crate) chance: f64,
     /// Upper bound of the total error, with 95 % confidence.
     pub most: f64,
 }
 
-impl Expected {
-    pub(super) fn of(bias: Off, chance: f64) -> Expected {
-        Expected { bias, chance, most: bias.with(chance) }
+impl ExpectedError {
+    pub(super) fn of(bias: BiasEstimate, chance: f64) -> ExpectedError {
+        ExpectedError { bias, chance, most: bias.with(chance) }
     }
 }
 
 /// A simpler model of the scene.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct LeftOut {
+pub(crate) struct SimplerModelReport {
     pub name: String,
     /// Change of the mean, and its error bar; none where it was not measured.
     pub change: Option<[f64; 2]>,
     /// Cost over the cost of the scene.
     pub(crate) cost: Option<f64>,
     /// Verdict for the target error.
-    pub(crate) need: Need,
+    pub(crate) need: NecessityVerdict,
     pub says: String,
 }
 
 /// Verdict on a simpler model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Need {
+pub(crate) enum NecessityVerdict {
     /// Without the part the mean changes by more than the error.
     Yes,
     /// Without the part the mean changes by less than the error.

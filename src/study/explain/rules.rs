@@ -1,33 +1,33 @@
 //! Rules of plans, tested on synthetic findings.
 
 use super::as_it_stands::AS_IT_STANDS;
-use super::bias::{Bias, Seen};
-use super::findings::{Findings, Way};
+use super::bias::{Bias, StepDifference};
+use super::findings::{Findings, MeasuredConfiguration};
 use super::plan::plan;
 use super::seen::{planned, seen};
-use super::{ExplainError, Target, page};
+use super::{ExplainError, PlanTarget, page};
 use crate::results::Journal;
-use crate::study::trial::Known;
-use crate::study::trial::{Compared, Stopwatch, Trial, pairs, part};
-use crate::study::{Case, Choice};
+use crate::study::trial::MeanEstimate;
+use crate::study::trial::{PairedConfigurations, Stopwatch, TrialControl, pairs, part};
+use crate::study::{SettingChoice, StudyCase};
 use std::sync::atomic::AtomicBool;
-use stripmine_physics::method::{METHODS, Purpose};
+use stripmine_physics::method::{METHODS, StartPurpose};
 use stripmine_physics::scene::{DT, Overrides, SEED, Width};
 
 /// A configuration, wall seconds of a unit of time, and the bias.
-type Made<'m> = (&'m Choice, f64, Option<Bias>);
+type ConfigurationCase<'m> = (&'m SettingChoice, f64, Option<Bias>);
 
-fn gas() -> Case {
-    Case::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap()
+fn gas() -> StudyCase {
+    StudyCase::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap()
 }
 
-fn asking(case: &Case, error: f64) -> Target {
-    Target::of(case, Some("pressure"), Some(Width::Absolute(error))).unwrap()
+fn asking(case: &StudyCase, error: f64) -> PlanTarget {
+    PlanTarget::of(case, Some("pressure"), Some(Width::Absolute(error))).unwrap()
 }
 
 /// Configurations at the scene's own step, and a mean of 1.
-fn findings(case: &Case, ways: &[Made<'_>], mean: Known) -> Findings {
-    let way = |(choice, cost, bias): &Made<'_>| Way {
+fn findings(case: &StudyCase, ways: &[ConfigurationCase<'_>], mean: MeanEstimate) -> Findings {
+    let way = |(choice, cost, bias): &ConfigurationCase<'_>| MeasuredConfiguration {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
         overrides: choice.overrides(),
@@ -54,19 +54,19 @@ fn findings(case: &Case, ways: &[Made<'_>], mean: Known) -> Findings {
     }
 }
 
-fn known(square: f64, freedoms: f64) -> Known {
-    Known {
+fn known(square: f64, freedoms: f64) -> MeanEstimate {
+    MeanEstimate {
         bar: square.sqrt(),
         square,
         span: 1.0,
         waves: freedoms,
         apart: 1e-6,
         freedoms,
-        ..Known::exactly(1.0)
+        ..MeanEstimate::exactly(1.0)
     }
 }
 
-fn biased(case: &Case, shift: f64, bar: f64) -> Option<Bias> {
+fn biased(case: &StudyCase, shift: f64, bar: f64) -> Option<Bias> {
     let step = case.step().unwrap();
     Some(Bias { shift, bar, part: 1.0, pairs: Some([shift, bar]), ..Bias::unknown(step, 2.0) })
 }
@@ -76,8 +76,9 @@ fn biased(case: &Case, shift: f64, bar: f64) -> Option<Bias> {
 #[test]
 fn plan_is_never_worse_than_the_scene() {
     let case = gas();
-    let all = Choice::all(case.entry.axes);
-    let order = |choice: &&Choice| choice.scheme().map(|it| it.name) == case.own.scheme().map(|it| it.name);
+    let all = SettingChoice::all(case.entry.axes);
+    let order =
+        |choice: &&SettingChoice| choice.scheme().map(|it| it.name) == case.own.scheme().map(|it| it.name);
     let other = all.iter().filter(order).find(|choice| **choice != case.own).unwrap();
     let time = case.duration().unwrap();
     // Statistical error alone of the scene itself.
@@ -105,25 +106,26 @@ fn plan_is_never_worse_than_the_scene() {
 #[test]
 fn pairs_measure_heating_of_the_printed_scheme() {
     let sets = ["particles.count=4000", "domain.sides=[100.0, 50.0]"].map(str::to_owned);
-    let case = Case::load("langevin-free", &sets, METHODS).unwrap();
+    let case = StudyCase::load("langevin-free", &sets, METHODS).unwrap();
     let place = case.entry.quantities.iter().position(|it| it.name == "temperature").unwrap();
     let integrator = case.entry.vocabulary.keys.key("integrator", "kind").unwrap();
     let kinds = [("baoab", 0.025), ("as-printed", 0.2), ("as-printed", 0.1)];
     let begin = |at: usize, start: usize| {
         let (kind, step) = kinds[at];
         let more = Overrides::new().set(integrator, kind).set(&DT, step).set(&SEED, start as u64 + 1);
-        Ok(case.prepared_with(&more).unwrap().start(Purpose::Run).unwrap())
+        Ok(case.prepared_with(&more).unwrap().start(StartPurpose::Run).unwrap())
     };
-    let compared = Compared { steps: &[8, 1, 2], first: 2, starts: 24, begin: &begin };
+    let compared = PairedConfigurations { steps: &[8, 1, 2], first: 2, starts: 24, begin: &begin };
     let (watch, stop) = (Stopwatch::made(1.0), AtomicBool::new(false));
-    let trial = Trial { watch: &watch, stop: &stop };
+    let trial = TrialControl { watch: &watch, stop: &stop };
     let paired = pairs(&trial, &compared, (case.entry.quantities, place), 0.1).unwrap();
     assert!(paired.windows.len() > 3, "{:?}", paired.windows);
     // Temperatures decorrelate at the rate 2 γ/m.
     const MEMORY: f64 = 0.5;
     for both in paired.windows.windows(2) {
-        let seen =
-            |place: usize| Seen::of([&both[0], &both[1]], place, (MEMORY, 1.0), (kinds[1 + place].1, 0.0));
+        let seen = |place: usize| {
+            StepDifference::of([&both[0], &both[1]], place, (MEMORY, 1.0), (kinds[1 + place].1, 0.0))
+        };
         let shown = part(both[1].time, MEMORY);
         let bias = Bias::of(&[seen(0), seen(1)], 1.0, both[1].time, shown, paired.starts);
         let said = format!("{}: {bias:?}", both[1].time);
@@ -141,14 +143,19 @@ fn trials_on_a_synthetic_clock_are_reproducible() {
         ("langevin-dense", &["particles.count=64", "domain.sides=[12.0, 9.0]"], "potential", 2000.0),
     ] {
         let sets: Vec<String> = sets.iter().map(|&text| text.to_owned()).collect();
-        let case = Case::load(preset, &sets, METHODS).unwrap();
-        let target = Target::of(&case, Some(quantity), Some(Width::Percent(10.0))).unwrap();
+        let case = StudyCase::load(preset, &sets, METHODS).unwrap();
+        let target = PlanTarget::of(&case, Some(quantity), Some(Width::Percent(10.0))).unwrap();
         let stop = AtomicBool::new(false);
         let made = || {
             let watch = Stopwatch::made(each);
-            let mut found =
-                seen(&case, &target, 6.0, Trial { watch: &watch, stop: &stop }, (&|_| {}, &Journal::none()))
-                    .unwrap();
+            let mut found = seen(
+                &case,
+                &target,
+                6.0,
+                TrialControl { watch: &watch, stop: &stop },
+                (&|_| {}, &Journal::none()),
+            )
+            .unwrap();
             found.ways.iter_mut().for_each(|way| way.phases.clear());
             serde_json::to_string(&found).unwrap()
         };
@@ -171,7 +178,7 @@ fn refused_plan_reports_error_within_the_limit() {
     let said = ExplainError::OutOfReach { quantity: "pressure", unreached: refused }.to_string();
     assert!(said.contains("44 h") && said.contains("60 min") && said.contains("0.067"), "{said}");
     // A sufficient limit.
-    let patient = Target { limit: 200_000.0, ..asking(&case, 0.01) };
+    let patient = PlanTarget { limit: 200_000.0, ..asking(&case, 0.01) };
     assert!(plan(&case, &patient, &found, "trials").is_ok());
 }
 

@@ -1,16 +1,16 @@
 //! Trials of a scene in order, and the plan that follows from them.
 
-use super::findings::{Findings, HALVINGS, SHARES, Way, Work};
+use super::findings::{Findings, HALVINGS, MeasuredConfiguration, SHARES, SceneTrials};
 use super::keeping::keeping;
-use super::mean::Mean;
+use super::mean::TrialMean;
 use super::plan::plan;
-use super::recommended::Plan;
+use super::recommended::RunPlan;
 use super::timing::{OF_LIMIT, OF_ONE_THREAD, bounded};
 use super::unreached::Unreached;
-use super::{ExplainError, Target};
+use super::{ExplainError, PlanTarget};
 use crate::results::Journal;
-use crate::study::Case;
-use crate::study::trial::Trial;
+use crate::study::StudyCase;
+use crate::study::trial::TrialControl;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::StepLimit;
 
@@ -23,19 +23,19 @@ const ROUNDING: f64 = 1e-3;
 ///
 /// # Errors
 /// [`ExplainError`] if every trial fails, or the quantity does not become stationary.
-fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, ExplainError> {
+fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findings, ExplainError> {
     let begun = work.trial.watch.now();
-    let tell = |work: &Work<'_>| progress(((work.trial.watch.now() - begun) / work.seconds).min(1.0));
+    let tell = |work: &SceneTrials<'_>| progress(((work.trial.watch.now() - begun) / work.seconds).min(1.0));
     let journal = work.journal;
     let timed = || work.unless_stopped(work.timed_ways()?);
-    let mut ways: Vec<Way> = journal.recall("costs", |_| true, timed)?;
+    let mut ways: Vec<MeasuredConfiguration> = journal.recall("costs", |_| true, timed)?;
     restore(&mut ways, work.case);
     tell(work);
     if work.target.is_kept() {
         return work.drifts(ways);
     }
     let known = journal.recall("means", |_| true, || work.compared(ways, &tell))?;
-    let Compared { mut ways, mut mean, whole } = known;
+    let MeasuredBiases { mut ways, mut mean, whole } = known;
     restore(&mut ways, work.case);
     work.whole = whole;
     tell(work);
@@ -61,14 +61,18 @@ fn findings(work: &mut Work<'_>, progress: &dyn Fn(f64)) -> Result<Findings, Exp
 
 /// A mean, and the biases of configurations.
 #[derive(Serialize, Deserialize)]
-struct Compared {
-    ways: Vec<Way>,
-    mean: Mean,
+struct MeasuredBiases {
+    ways: Vec<MeasuredConfiguration>,
+    mean: TrialMean,
     whole: Option<f64>,
 }
 
-impl Work<'_> {
-    fn compared(&mut self, mut ways: Vec<Way>, tell: &dyn Fn(&Self)) -> Result<Compared, ExplainError> {
+impl SceneTrials<'_> {
+    fn compared(
+        &mut self,
+        mut ways: Vec<MeasuredConfiguration>,
+        tell: &dyn Fn(&Self),
+    ) -> Result<MeasuredBiases, ExplainError> {
         let mean = self.mean(&mut ways)?;
         tell(self);
         // The trials of the bias may use all remaining time, except the shares of those that follow. Whole runs have no time to spare.
@@ -84,12 +88,12 @@ impl Work<'_> {
         self.end -= kept_back;
         self.biases(&mut ways, &mean);
         self.end += kept_back;
-        self.unless_stopped(Compared { ways, mean, whole: self.whole })
+        self.unless_stopped(MeasuredBiases { ways, mean, whole: self.whole })
     }
 }
 
 /// Restores overrides, which are not cached, from settings and skins.
-pub(super) fn restore(ways: &mut [Way], case: &Case) {
+pub(super) fn restore(ways: &mut [MeasuredConfiguration], case: &StudyCase) {
     for way in ways {
         way.overrides = way.overrides_in(case);
     }
@@ -100,10 +104,10 @@ pub(super) fn restore(ways: &mut [Way], case: &Case) {
 /// # Errors
 /// [`ExplainError`] if every trial fails, or the quantity has no mean.
 pub(crate) fn seen(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     seconds: f64,
-    trial: Trial<'_>,
+    trial: TrialControl<'_>,
     (progress, journal): (&dyn Fn(f64), &Journal),
 ) -> Result<Findings, ExplainError> {
     seen_by(SHARES, case, target, seconds, trial, (progress, journal))
@@ -114,25 +118,25 @@ pub(crate) fn seen(
 /// # Errors
 /// As [`seen`].
 pub(super) fn seen_with_twins(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     seconds: f64,
-    trial: Trial<'_>,
+    trial: TrialControl<'_>,
 ) -> Result<Findings, ExplainError> {
     seen_by(OF_TWINS, case, target, seconds, trial, (&|_| {}, &Journal::none()))
 }
 
 fn seen_by(
     shares: [f64; 5],
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     seconds: f64,
-    trial: Trial<'_>,
+    trial: TrialControl<'_>,
     (progress, journal): (&dyn Fn(f64), &Journal),
 ) -> Result<Findings, ExplainError> {
     let end = trial.watch.now() + seconds;
     let (as_it_stands, whole) = (None, None);
-    let work = &mut Work { case, target, seconds, shares, end, trial, journal, as_it_stands, whole };
+    let work = &mut SceneTrials { case, target, seconds, shares, end, trial, journal, as_it_stands, whole };
     findings(work, progress)
 }
 
@@ -141,11 +145,11 @@ fn seen_by(
 /// # Errors
 /// [`Unreached`], where no configuration reaches the target.
 pub(crate) fn planned(
-    case: &Case,
-    target: &Target,
+    case: &StudyCase,
+    target: &PlanTarget,
     findings: &Findings,
     origin: &str,
-) -> Result<Plan, Unreached> {
+) -> Result<RunPlan, Unreached> {
     if target.is_kept() {
         return Ok(keeping(case, target, findings, origin)?.or_as_it_stands(case, findings));
     }
@@ -161,7 +165,7 @@ pub(crate) fn planned(
 }
 
 /// Returns the theoretical limit on the step of a plan's run, if the plan exceeds it.
-fn limit_of(case: &Case, plan: &Plan) -> Option<StepLimit> {
+fn limit_of(case: &StudyCase, plan: &RunPlan) -> Option<StepLimit> {
     let limits = case.prepared_with(&plan.overrides).ok()?.step_limits;
     let limit = limits.into_iter().min_by(|a, b| a.step.total_cmp(&b.step))?;
     (plan.step? > OF_LIMIT * limit.step * (1.0 + ROUNDING)).then_some(limit)

@@ -4,8 +4,8 @@
 //! H₂. To leading order a mean of A at the step is that of short steps less β h² Cov(A, H₂), which is β Cov(A, H) along the run (Bond and Leimkuhler,
 //! Acta Numerica 16, 2007). The statistical error falls with h², as the bias does.
 
-use super::findings::{Way, Work};
-use super::mean::Mean;
+use super::findings::{MeasuredConfiguration, SceneTrials};
+use super::mean::TrialMean;
 use stripmine_physics::averages::of_independent;
 use stripmine_physics::method::Trials;
 use stripmine_physics::method::observed::find;
@@ -15,16 +15,16 @@ const STRETCHES: usize = 16;
 /// Fewest rows of a stretch.
 const FEWEST: usize = 8;
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Bias of the configuration and step that the mean was measured with, and half the width of its 95 % interval (the quantity's unit). None where
     /// the integrator conserves no shadow energy, or energy enters or leaves.
-    pub(super) fn of_shadow(&self, way: &Way, mean: &Mean) -> Option<[f64; 2]> {
+    pub(super) fn of_shadow(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> Option<[f64; 2]> {
         let trials = self.case.entry.trials?;
         let keeps = trials.shadow?.integrators.contains(&self.choice(way).scheme()?.name);
         (keeps && way.label == mean.way).then(|| self.covariance(trials, mean)).flatten()
     }
 
-    fn covariance(&self, trials: &Trials, mean: &Mean) -> Option<[f64; 2]> {
+    fn covariance(&self, trials: &Trials, mean: &TrialMean) -> Option<[f64; 2]> {
         let quantities = self.case.entry.quantities;
         let temperature = find(quantities, trials.shadow?.temperature).ok()?;
         let rows: Vec<Vec<f64>> =

@@ -1,7 +1,7 @@
 //! Skin of neighbour lists, chosen by trials: no constant predicts how discs move.
 
-use super::findings::{Way, Work, sort};
-use crate::study::Case;
+use super::findings::{MeasuredConfiguration, SceneTrials, sort};
+use crate::study::StudyCase;
 use crate::study::rounded;
 use stripmine_physics::scene::Overrides;
 
@@ -10,10 +10,12 @@ const TRIED: [f64; 3] = [0.4, 0.65, 1.5];
 /// Smallest saving, in parts of the time, for which a skin is changed: less is within timing noise.
 const WORTH: f64 = 0.04;
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Tunes the skin of all configurations with neighbour lists, where lists are the cheapest search.
-    pub(super) fn tune_skin(&self, ways: &mut [Way], seconds: f64) {
-        let by_lists = |way: &Way| way.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS);
+    pub(super) fn tune_skin(&self, ways: &mut [MeasuredConfiguration], seconds: f64) {
+        let by_lists = |way: &MeasuredConfiguration| {
+            way.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS)
+        };
         let Some(best) = ways.first().filter(|way| by_lists(way) && self.left() > seconds).cloned() else {
             return;
         };
@@ -47,16 +49,16 @@ impl Work<'_> {
 const LISTS: &str = "neighbor-list";
 
 /// Sets the skin, rounded to the printed precision.
-fn with_skin(overrides: Overrides, case: &Case, skin: f64) -> Overrides {
+fn with_skin(overrides: Overrides, case: &StudyCase, skin: f64) -> Overrides {
     match case.entry.vocabulary.keys.key("search", "skin") {
         Some(key) => overrides.set(key, rounded(skin, 3)),
         None => overrides,
     }
 }
 
-impl Way {
+impl MeasuredConfiguration {
     /// Overrides that select this configuration.
-    pub(super) fn overrides_in(&self, case: &Case) -> Overrides {
+    pub(super) fn overrides_in(&self, case: &StudyCase) -> Overrides {
         let overrides = self.choice(case).overrides();
         match self.skin {
             Some([_, skin, _]) => with_skin(overrides, case, skin),

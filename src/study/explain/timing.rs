@@ -1,10 +1,10 @@
 //! Cost of each configuration of a scene, at its longest usable step.
 
 use super::ExplainError;
-use super::findings::{HALVINGS, NO_TIME, Way, Work, sort};
-use crate::study::{Choice, first_line};
+use super::findings::{HALVINGS, MeasuredConfiguration, NO_TIME, SceneTrials, sort};
+use crate::study::{SettingChoice, first_line};
 use rayon::ThreadPoolBuilder;
-use stripmine_physics::method::{Decides, StepLimit};
+use stripmine_physics::method::{ChoiceEffect, StepLimit};
 use stripmine_physics::number::significant;
 
 /// Longest step tried, in parts of the smallest theoretical limit: at the limit itself the fastest disc fails.
@@ -23,17 +23,18 @@ pub(super) const OF_ONE_THREAD: f64 = 0.02;
 /// Factor for preparing and starting, which may take as long as the timing itself; nothing is timed beyond it.
 const OVERHEAD: f64 = 2.0;
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Times every configuration at its longest step, and sorts them by cost.
     ///
     /// The cheapest search or engine is determined with the scene's own integrator and precision, as results are the same; then integrators and
     /// precisions are timed with it.
-    pub(super) fn timed_ways(&self) -> Result<Vec<Way>, ExplainError> {
-        let all = Choice::all(self.case.entry.axes);
+    pub(super) fn timed_ways(&self) -> Result<Vec<MeasuredConfiguration>, ExplainError> {
+        let all = SettingChoice::all(self.case.entry.axes);
         let own = &self.case.own;
-        let of_own_arithmetic =
-            |choice: &&Choice| choice.agrees(own, Decides::Order) && choice.agrees(own, Decides::Digits);
-        let mut searches: Vec<&Choice> = all.iter().filter(of_own_arithmetic).collect();
+        let of_own_arithmetic = |choice: &&SettingChoice| {
+            choice.agrees(own, ChoiceEffect::Order) && choice.agrees(own, ChoiceEffect::Digits)
+        };
+        let mut searches: Vec<&SettingChoice> = all.iter().filter(of_own_arithmetic).collect();
         // The scene's own is timed first, whatever it costs.
         searches.sort_by_key(|choice| *choice != own);
         let each = self.shares[0] * self.seconds / 2.0;
@@ -46,9 +47,9 @@ impl Work<'_> {
             return Err(ExplainError::EveryWayFails(tried.collect()));
         };
         let best = all.iter().find(|choice| choice.label() == best).unwrap_or(own);
-        let others: Vec<&Choice> = all
+        let others: Vec<&SettingChoice> = all
             .iter()
-            .filter(|choice| choice.agrees(best, Decides::Cost) && !of_own_arithmetic(choice))
+            .filter(|choice| choice.agrees(best, ChoiceEffect::Cost) && !of_own_arithmetic(choice))
             .collect();
         ways.extend(self.timed(&others, each, end(each)));
         sort(&mut ways);
@@ -60,17 +61,17 @@ impl Work<'_> {
     /// times overlap. After the deadline none but the scene's own is begun.
     ///
     /// The smallest of several times counts, as other programs disturb the others.
-    fn timed(&self, choices: &[&Choice], seconds: f64, end: f64) -> Vec<Way> {
+    fn timed(&self, choices: &[&SettingChoice], seconds: f64, end: f64) -> Vec<MeasuredConfiguration> {
         let mut each = seconds / (2 * choices.len().max(1)) as f64;
         let is_over = || self.trial.watch.now() >= end;
-        let of = |choice: &&Choice| {
+        let of = |choice: &&SettingChoice| {
             if is_over() && **choice != self.case.own {
                 let dropped = Some(format!("not timed: {NO_TIME}"));
-                return Way { dropped, ..untimed(choice) };
+                return MeasuredConfiguration { dropped, ..untimed(choice) };
             }
             self.at_longest(choice, each)
         };
-        let mut ways: Vec<Way> = choices.iter().map(of).collect();
+        let mut ways: Vec<MeasuredConfiguration> = choices.iter().map(of).collect();
         let mut race = Race::of(&ways);
         for _ in 1..ROUNDS {
             race.halve();
@@ -92,7 +93,7 @@ impl Work<'_> {
     }
 
     /// Times a configuration at the longest step that theory allows and at which it runs.
-    fn at_longest(&self, choice: &Choice, seconds: f64) -> Way {
+    fn at_longest(&self, choice: &SettingChoice, seconds: f64) -> MeasuredConfiguration {
         let mut way = untimed(choice);
         let own_step = self.case.step();
         let prepared = match self.prepared(&way.overrides, None) {
@@ -127,7 +128,7 @@ impl Work<'_> {
     }
 
     /// Ratio of the cost with one thread to that with all threads.
-    pub(super) fn one_thread(&self, way: &Way) -> f64 {
+    pub(super) fn one_thread(&self, way: &MeasuredConfiguration) -> f64 {
         let threads = rayon::current_num_threads();
         let seconds = OF_ONE_THREAD * self.seconds;
         let measured = || {
@@ -151,7 +152,7 @@ struct Race {
 }
 
 impl Race {
-    fn of(ways: &[Way]) -> Race {
+    fn of(ways: &[MeasuredConfiguration]) -> Race {
         let timed = ways.iter().enumerate().filter_map(|(at, way)| Some((at, vec![way.cost?])));
         Race { racing: timed.collect() }
     }
@@ -184,8 +185,8 @@ fn least(times: &[f64]) -> f64 {
 }
 
 /// A configuration without measurements.
-fn untimed(choice: &Choice) -> Way {
-    Way {
+fn untimed(choice: &SettingChoice) -> MeasuredConfiguration {
+    MeasuredConfiguration {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
         overrides: choice.overrides(),
@@ -201,7 +202,7 @@ fn untimed(choice: &Choice) -> Way {
 }
 
 /// Drops configurations that cost more than `DEAR` times the cheapest: their results are the same.
-fn give_up(ways: &mut [Way]) {
+fn give_up(ways: &mut [MeasuredConfiguration]) {
     let costs: Vec<f64> = ways.iter().filter_map(|way| way.cost).collect();
     let cheapest = least(&costs);
     for way in ways.iter_mut() {

@@ -1,13 +1,13 @@
 //! Values for `auto` settings of a scene, from cached measurements of it or of a similar scene on this host.
 
-use super::kept::{Kept, KeptError};
-use crate::study::Case;
-use stripmine_physics::method::Decides;
-use stripmine_physics::scene::{Key, Overrides, Value};
+use super::kept::{PlanCache, PlanCacheError};
+use crate::study::StudyCase;
+use stripmine_physics::method::ChoiceEffect;
+use stripmine_physics::scene::{Key, KeyValue, Overrides};
 
 /// Values for the `auto` settings of a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Tuned {
+pub(crate) struct TunedSettings {
     /// Overrides with these values.
     pub overrides: Overrides,
     /// Origin of the measurements.
@@ -19,20 +19,21 @@ pub(crate) struct Tuned {
 ///
 /// # Errors
 /// [`KeptError`] if the cache cannot be read.
-pub(crate) fn tuned(case: &Case, kept: &Kept) -> Result<Option<Tuned>, KeptError> {
+pub(crate) fn tuned(case: &StudyCase, kept: &PlanCache) -> Result<Option<TunedSettings>, PlanCacheError> {
     let Some((findings, origin)) = kept.alike(case)? else { return Ok(None) };
     let is_open = |key: &Key| case.values.choice(key).as_deref() == Some("auto");
     let holds =
-        |key: &Key, value: &Value| case.values.choice(key).is_none_or(|now| Value::Word(now) == *value);
+        |key: &Key, value: &KeyValue| case.values.choice(key).is_none_or(|now| KeyValue::Word(now) == *value);
     // Timed configurations are sorted by cost.
     for way in findings.ways.iter().filter(|way| way.cost.is_some()) {
         let choice = way.choice(case);
-        let is_own = [Decides::Order, Decides::Digits].iter().all(|&it| choice.agrees(&case.own, it));
+        let is_own =
+            [ChoiceEffect::Order, ChoiceEffect::Digits].iter().all(|&it| choice.agrees(&case.own, it));
         let overrides = choice.overrides();
         if is_own && overrides.iter().all(|(key, value)| is_open(key) || holds(key, value)) {
             let open = overrides.iter().filter(|(key, _)| is_open(key));
             let overrides: Overrides = open.map(|(key, value)| (key, value.clone())).collect();
-            return Ok((!overrides.is_empty()).then_some(Tuned { overrides, origin }));
+            return Ok((!overrides.is_empty()).then_some(TunedSettings { overrides, origin }));
         }
     }
     Ok(None)

@@ -1,49 +1,51 @@
 //! Simpler models of a scene: their effect on the mean, and the time they save.
 
-use super::Target;
-use super::findings::{NO_TIME, Way, Without, Work};
-use super::mean::Mean;
-use super::whole::Measured;
-use crate::study::trial::Known;
-use crate::study::{Case, first_line};
-use stripmine_physics::method::{Becomes, Prepared, Rewritten};
+use super::PlanTarget;
+use super::findings::{MeasuredConfiguration, NO_TIME, SceneTrials, SimplerModelResult};
+use super::mean::TrialMean;
+use super::whole::MeasuredMean;
+use crate::study::trial::MeanEstimate;
+use crate::study::{StudyCase, first_line};
+use stripmine_physics::method::{Prepared, SimplifiedModel, TranslatedScene};
 use stripmine_physics::scene::{Overrides, SceneErrors};
 
 /// Lists the simpler models of a scene for a quantity, by the part they omit.
-fn simpler(case: &Case, quantity: &str) -> Vec<(&'static str, Simpler)> {
-    let of = |becomes: &Becomes| {
+fn simpler(case: &StudyCase, quantity: &str) -> Vec<(&'static str, SimplerScene)> {
+    let of = |becomes: &SimplifiedModel| {
         Some(match becomes {
-            Becomes::Overridden(overrides) => Simpler::Overridden(overrides(&case.values)?),
-            Becomes::Rewritten(scene) => Simpler::Rewritten(scene(&case.values, &case.prepared, quantity)?),
+            SimplifiedModel::Overridden(overrides) => SimplerScene::Overridden(overrides(&case.values)?),
+            SimplifiedModel::Rewritten(scene) => {
+                SimplerScene::Rewritten(scene(&case.values, &case.prepared, quantity)?)
+            }
         })
     };
     case.entry.twins.iter().filter_map(|twin| Some((twin.name, of(&twin.becomes)?))).collect()
 }
 
 /// True if a scene has simpler models to compare.
-pub(super) fn has_simpler(case: &Case, quantity: &str) -> bool {
+pub(super) fn has_simpler(case: &StudyCase, quantity: &str) -> bool {
     !simpler(case, quantity).is_empty()
 }
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Measures every simpler model of the scene.
-    pub(super) fn without(&self, way: &Way, mean: &Mean) -> Vec<Without> {
+    pub(super) fn without(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> Vec<SimplerModelResult> {
         let reference = &mean.known;
         let twins = simpler(self.case, self.target.quantity.name);
         let seconds = self.shares[3] * self.seconds / twins.len().max(1) as f64;
-        let measured = |(name, simpler): (&str, Simpler)| {
-            let of = |failed: Option<String>| Without {
+        let measured = |(name, simpler): (&str, SimplerScene)| {
+            let of = |failed: Option<String>| SimplerModelResult {
                 name: name.to_owned(),
                 difference: None,
                 cost: None,
                 failed,
             };
             let measured = match simpler {
-                Simpler::Overridden(overrides) => self.overridden(way, &overrides, seconds),
-                Simpler::Rewritten(scene) => self.rewritten(scene, seconds),
+                SimplerScene::Overridden(overrides) => self.overridden(way, &overrides, seconds),
+                SimplerScene::Rewritten(scene) => self.rewritten(scene, seconds),
             };
             match measured {
-                Ok(Measured { known, cost, .. }) => Without {
+                Ok(MeasuredMean { known, cost, .. }) => SimplerModelResult {
                     difference: known
                         .as_ref()
                         .ok()
@@ -58,7 +60,12 @@ impl Work<'_> {
     }
 
     /// Measures a model with the same method.
-    fn overridden(&self, way: &Way, overrides: &Overrides, seconds: f64) -> Result<Measured, String> {
+    fn overridden(
+        &self,
+        way: &MeasuredConfiguration,
+        overrides: &Overrides,
+        seconds: f64,
+    ) -> Result<MeasuredMean, String> {
         let shortest =
             |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
         let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
@@ -67,36 +74,36 @@ impl Work<'_> {
         let longer = shortest(&self.prepared(&more, None)?)
             .zip(of_scene)
             .map_or(1.0, |(own, of_scene)| own / of_scene);
-        let twin = Way { overrides: more, ..way.clone() };
+        let twin = MeasuredConfiguration { overrides: more, ..way.clone() };
         self.measured(&twin, way.step.map(|step| step * longer), seconds)
     }
 
     /// Measures a model with another method, in its own cheapest configuration.
-    fn rewritten(&self, scene: Rewritten, seconds: f64) -> Result<Measured, String> {
+    fn rewritten(&self, scene: TranslatedScene, seconds: f64) -> Result<MeasuredMean, String> {
         let errors =
             |errors: SceneErrors| errors.0.first().map_or(String::new(), |error| first_line(&error.message));
         let case = self.case.beside(&scene.text).map_err(errors)?;
-        let target = Target::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;
+        let target = PlanTarget::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;
         if self.left() == 0.0 {
             return Err(NO_TIME.to_owned());
         }
-        let mut work = Work { case: &case, target: &target, seconds, ..*self };
+        let mut work = SceneTrials { case: &case, target: &target, seconds, ..*self };
         let ways = work.timed_ways().map_err(|error| error.to_string())?;
         work.seconds = self.seconds;
         let measured = work.measured(&ways[0], ways[0].step, seconds)?;
-        let in_unit = |known: Known| Known {
+        let in_unit = |known: MeanEstimate| MeanEstimate {
             mean: scene.unit * known.mean,
             bar: scene.unit * known.bar,
             square: scene.unit * scene.unit * known.square,
             single: scene.unit * scene.unit * known.single,
             ..known
         };
-        Ok(Measured { known: measured.known.map(in_unit), ..measured })
+        Ok(MeasuredMean { known: measured.known.map(in_unit), ..measured })
     }
 }
 
 /// A simpler model of a scene.
-enum Simpler {
+enum SimplerScene {
     Overridden(Overrides),
-    Rewritten(Rewritten),
+    Rewritten(TranslatedScene),
 }

@@ -1,11 +1,11 @@
 //! Means over whole runs, for quantities that never become stationary: a hopper that empties, a gas that cools. Runs from slightly displaced
 //! starts give the statistical error of such a mean.
 
-use super::findings::{NO_TIME, NoRun, Way, Work};
+use super::findings::{MeasuredConfiguration, MissingRun, NO_TIME, SceneTrials};
 use crate::results::side_by_side;
 use crate::study::first_line;
 use crate::study::state::displaced;
-use crate::study::trial::{Known, Sample, Span, any_number};
+use crate::study::trial::{MeanEstimate, SampleSpan, TrialSample, any_number};
 use serde::{Deserialize, Serialize};
 use stripmine_physics::method::Prepared;
 use stripmine_physics::number::significant;
@@ -19,29 +19,29 @@ pub(super) const RUNS: [usize; 2] = [3, 16];
 const DISPLACED: f64 = 1e-7;
 
 /// A mean with its cost.
-pub(super) struct Measured {
+pub(super) struct MeasuredMean {
     /// The mean, or the reason why there is none.
-    pub(super) known: Result<Known, String>,
+    pub(super) known: Result<MeanEstimate, String>,
     /// Wall seconds of a unit of time.
     pub(super) cost: f64,
 }
 
 /// Mean of a whole run, and wall seconds of a unit of time.
 #[derive(Clone, Copy, Serialize, Deserialize)]
-struct WholeRun {
+struct WholeRunMean {
     #[serde(with = "any_number")]
     mean: f64,
     cost: f64,
 }
 
-impl Work<'_> {
+impl SceneTrials<'_> {
     /// Time of a whole run: to the end of the requested window, or the scene's own (time).
     pub(super) fn whole_time(&self) -> Option<f64> {
         self.target.window.map(|[_, end]| end).or_else(|| self.case.duration())
     }
 
     /// Returns the time of a whole run if enough whole runs, besides the sample, fit into `seconds` at the sample's cost.
-    pub(super) fn whole_in(&self, sample: &Sample, seconds: f64) -> Option<f64> {
+    pub(super) fn whole_in(&self, sample: &TrialSample, seconds: f64) -> Option<f64> {
         self.whole_time().filter(|&time| {
             let more = RUNS[0] - usize::from(sample.cut_off(time).is_none());
             more.div_ceil(rayon::current_num_threads()) as f64 * sample.cost * time <= seconds
@@ -60,10 +60,15 @@ impl Work<'_> {
     }
 
     /// Measures the mean after the transient, or over whole runs, and the cost of a unit of time.
-    pub(super) fn measured(&self, way: &Way, step: Option<f64>, seconds: f64) -> Result<Measured, String> {
+    pub(super) fn measured(
+        &self,
+        way: &MeasuredConfiguration,
+        step: Option<f64>,
+        seconds: f64,
+    ) -> Result<MeasuredMean, String> {
         match self.whole {
             Some(time) => self.whole_runs(&way.overrides, step, (time, None), seconds),
-            None => self.sampled_over(way, step, Span::Seconds(seconds)).map(|sample| Measured {
+            None => self.sampled_over(way, step, SampleSpan::Seconds(seconds)).map(|sample| MeasuredMean {
                 known: sample.known().ok_or_else(|| sample.without_mean()),
                 cost: sample.cost,
             }),
@@ -76,15 +81,15 @@ impl Work<'_> {
         &self,
         overrides: &Overrides,
         step: Option<f64>,
-        (time, first): (f64, Option<&Sample>),
+        (time, first): (f64, Option<&TrialSample>),
         seconds: f64,
-    ) -> Result<Measured, String> {
+    ) -> Result<MeasuredMean, String> {
         let begun = self.trial.watch.now();
         let at_once = rayon::current_num_threads().min(RUNS[1]);
         let observed = (self.case.entry.quantities, self.target.place);
         let from = self.target.window.map_or(0.0, |[from, _]| from);
-        let whole = |sample: &Sample| {
-            let run = WholeRun { mean: sample.mean_over([from, time]), cost: sample.cost };
+        let whole = |sample: &TrialSample| {
+            let run = WholeRunMean { mean: sample.mean_over([from, time]), cost: sample.cost };
             sample.cut_off(time).map_or(Ok(run), Err)
         };
         let one = |number: usize| {
@@ -93,23 +98,23 @@ impl Work<'_> {
                 &key,
                 |_| true,
                 || {
-                    let prepared = self.another_start(overrides, step, number as u64).map_err(NoRun)?;
+                    let prepared = self.another_start(overrides, step, number as u64).map_err(MissingRun)?;
                     let left = self.left();
                     if left == 0.0 {
-                        return Err(NoRun(NO_TIME.to_owned()));
+                        return Err(MissingRun(NO_TIME.to_owned()));
                     }
-                    let sample = self.trial.sample(&prepared, observed, Span::Time(time, Some(left)));
-                    let sample = sample.map_err(|failure| NoRun(first_line(&failure.what())))?;
-                    whole(&sample).map_err(NoRun)
+                    let sample = self.trial.sample(&prepared, observed, SampleSpan::Time(time, Some(left)));
+                    let sample = sample.map_err(|failure| MissingRun(first_line(&failure.what())))?;
+                    whole(&sample).map_err(MissingRun)
                 },
             );
-            run.map_err(|NoRun(why)| why)
+            run.map_err(|MissingRun(why)| why)
         };
-        let mut samples: Vec<WholeRun> = first.and_then(|it| whole(it).ok()).into_iter().collect();
+        let mut samples: Vec<WholeRunMean> = first.and_then(|it| whole(it).ok()).into_iter().collect();
         let known_before = samples.len();
         loop {
             let next: Vec<usize> = (samples.len()..samples.len() + at_once).collect();
-            let more: Result<Vec<WholeRun>, String> = side_by_side(&next, |&number| one(number));
+            let more: Result<Vec<WholeRunMean>, String> = side_by_side(&next, |&number| one(number));
             match more {
                 Ok(more) => samples.extend(more),
                 Err(why) if samples.len() < RUNS[0] => return Err(why),
@@ -124,8 +129,9 @@ impl Work<'_> {
         }
         let means: Vec<f64> = samples.iter().map(|it| it.mean).collect();
         let count = means.len() as f64;
-        Ok(Measured {
-            known: Known::of_whole_runs(&means, time).ok_or_else(|| "only one run finished".to_owned()),
+        Ok(MeasuredMean {
+            known: MeanEstimate::of_whole_runs(&means, time)
+                .ok_or_else(|| "only one run finished".to_owned()),
             cost: samples.iter().map(|sample| sample.cost).sum::<f64>() / count,
         })
     }

@@ -1,6 +1,6 @@
 //! The plan as a page of text.
 
-use super::recommended::{Beside, Decision, Expected, Interval, LeftOut, Plan};
+use super::recommended::{Alternative, Decision, ExpectedError, LikelyRange, RunPlan, SimplerModelReport};
 use stripmine_physics::memory::in_words;
 use stripmine_physics::number::{significant, with_bar};
 
@@ -10,7 +10,7 @@ pub(crate) fn with_unit(value: &str, unit: &str) -> String {
 }
 
 /// Returns the page: command and expected result, then every choice with its reason and the alternatives.
-pub(crate) fn page(plan: &Plan) -> String {
+pub(crate) fn page(plan: &RunPlan) -> String {
     let mut page = vec![answer(plan), expected(plan)];
     page.extend(plan.own.as_ref().map(|own| {
         let takes = seconds(own.seconds);
@@ -33,13 +33,13 @@ pub(crate) fn page(plan: &Plan) -> String {
 }
 
 /// Overrides equal to the scene's own values are printed too: the plan then stays the same if the scene changes.
-fn answer(plan: &Plan) -> String {
+fn answer(plan: &RunPlan) -> String {
     let set: String = plan.overrides.texts().iter().map(|text| format!(" \\\n    --set {text}")).collect();
     let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
     format!("stripmine run {}{seeds}{set}", plan.scene)
 }
 
-fn expected(plan: &Plan) -> String {
+fn expected(plan: &RunPlan) -> String {
     let mean = plan
         .mean
         .map_or(String::new(), |[mean, bar]| format!(" {}", with_unit(&with_bar(mean, bar), plan.unit)));
@@ -57,8 +57,8 @@ fn expected(plan: &Plan) -> String {
 }
 
 /// Formats an error and its parts, relative to the mean where there is one.
-fn parts(plan: &Plan, error: Expected) -> String {
-    let Expected { bias, chance, most } = error;
+fn parts(plan: &RunPlan, error: ExpectedError) -> String {
+    let ExpectedError { bias, chance, most } = error;
     match plan.mean {
         Some(_) if bias.below.is_infinite() => {
             format!("{} of statistical error; the step bias is unknown", share(plan, chance))
@@ -74,7 +74,7 @@ fn parts(plan: &Plan, error: Expected) -> String {
     }
 }
 
-fn share(plan: &Plan, error: f64) -> String {
+fn share(plan: &RunPlan, error: f64) -> String {
     if !error.is_finite() {
         return "unknown".to_owned();
     }
@@ -94,7 +94,7 @@ pub(crate) fn seconds(seconds: f64) -> String {
     }
 }
 
-fn interval(it: Interval) -> String {
+fn interval(it: LikelyRange) -> String {
     format!("{} ({} to {})", seconds(it.likely), seconds(it.least), seconds(it.most))
 }
 
@@ -107,12 +107,12 @@ fn decision(it: &Decision) -> Vec<String> {
     lines
 }
 
-fn beside(it: &Beside) -> String {
+fn beside(it: &Alternative) -> String {
     let cost = it.cost.map_or(String::new(), |cost| format!(" {}×", significant(cost, 2)));
     format!("    {}{cost}: {}", it.name, it.why)
 }
 
-fn left_out(it: &LeftOut) -> String {
+fn left_out(it: &SimplerModelReport) -> String {
     let cost = match it.cost {
         Some(cost) if cost < 1.0 => {
             format!(" (saves {} % of the time)", significant(100.0 * (1.0 - cost), 2))

@@ -3,10 +3,10 @@
 //! These programs are not available everywhere, so scripts in `tests/rivals/` measure them. Their latest results are shipped in
 //! `measured/`, with date, host and commit.
 
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::provenance::Measurement;
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::provenance::RepeatedMeasurement;
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::statistics::median;
 use serde::Deserialize;
 
@@ -32,7 +32,7 @@ const MEASURED: [(&str, &str, &str); 4] = [
 
 /// Contests with another program.
 #[derive(Clone, Debug, Deserialize)]
-struct Rival {
+struct RivalProgram {
     rival: String,
     version: String,
     build: String,
@@ -41,13 +41,13 @@ struct Rival {
     unit: String,
     contests: Vec<Contest>,
     /// Quantities that must agree between both programs.
-    same: Vec<Same>,
+    same: Vec<AgreedQuantity>,
     /// Peak memory of both programs, where it was measured.
     #[serde(default)]
-    memory: Vec<Memory>,
+    memory: Vec<PeakMemory>,
     /// Provenance, stored in a file of its own.
     #[serde(skip)]
-    source: Measurement,
+    source: RepeatedMeasurement,
 }
 
 /// Timings of one system, ours and theirs in alternation.
@@ -66,7 +66,7 @@ struct Contest {
 
 /// A quantity that both programs computed.
 #[derive(Clone, Debug, Deserialize)]
-struct Same {
+struct AgreedQuantity {
     what: String,
     ours: f64,
     theirs: f64,
@@ -75,7 +75,7 @@ struct Same {
 
 /// Peak memory of both programs, in bytes.
 #[derive(Clone, Debug, Deserialize)]
-struct Memory {
+struct PeakMemory {
     system: String,
     particles: u64,
     ours: u64,
@@ -101,12 +101,12 @@ impl Contest {
 }
 
 /// Reads all contests.
-fn rivals() -> Result<Vec<Rival>, Failure> {
+fn rivals() -> Result<Vec<RivalProgram>, CommandFailure> {
     let read = |(script, contests, source): &(&str, &str, &str)| {
         let wrong =
-            |cause: serde_json::Error| Failure::writing(format!("contests of {script}"))(cause.into());
-        let rival: Rival = serde_json::from_str(contests).map_err(wrong)?;
-        Ok(Rival { source: serde_json::from_str(source).map_err(wrong)?, ..rival })
+            |cause: serde_json::Error| CommandFailure::writing(format!("contests of {script}"))(cause.into());
+        let rival: RivalProgram = serde_json::from_str(contests).map_err(wrong)?;
+        Ok(RivalProgram { source: serde_json::from_str(source).map_err(wrong)?, ..rival })
     };
     MEASURED.iter().map(read).collect()
 }
@@ -115,18 +115,25 @@ fn rivals() -> Result<Vec<Rival>, Failure> {
 ///
 /// # Errors
 /// Fails if a shipped file is not in the format of the scripts.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let all = rivals()?;
     let repeated = all.iter().map(|rival| rival.source.clone()).collect();
-    Ok(Made {
+    Ok(FinishedItem {
         repeated,
-        ..Made::of([contests(&all), fastest(&all), same(&all), memory(&all), programs(&all), summary(&all)])
+        ..FinishedItem::of([
+            contests(&all),
+            fastest(&all),
+            same(&all),
+            memory(&all),
+            programs(&all),
+            summary(&all),
+        ])
     })
 }
 
-fn contests(all: &[Rival]) -> Frame {
+fn contests(all: &[RivalProgram]) -> ResultFrame {
     let middle = |rates: &[f64]| median(rates.iter().copied());
-    Rows::of(all.iter().flat_map(|rival| rival.contests.iter().map(move |it| (rival, it))))
+    FrameBuilder::of(all.iter().flat_map(|rival| rival.contests.iter().map(move |it| (rival, it))))
         .text("beside", |(rival, _)| &rival.rival)
         .text("system", |(_, it)| &it.system)
         .count("particles", |(_, it)| it.particles)
@@ -140,12 +147,12 @@ fn contests(all: &[Rival]) -> Frame {
 }
 
 /// Our fastest configuration in each precision, for each system and size.
-fn fastest(all: &[Rival]) -> Frame {
-    let mut best: Vec<(&Rival, &str, &Contest)> = vec![];
+fn fastest(all: &[RivalProgram]) -> ResultFrame {
+    let mut best: Vec<(&RivalProgram, &str, &Contest)> = vec![];
     for rival in all {
         for precision in ["f64", "f32"] {
             for it in rival.contests.iter().filter(|it| it.way.contains(precision)) {
-                let alike = |known: &&mut (&Rival, &str, &Contest)| {
+                let alike = |known: &&mut (&RivalProgram, &str, &Contest)| {
                     (&known.0.rival, known.1, &known.2.system, known.2.particles)
                         == (&rival.rival, precision, &it.system, it.particles)
                 };
@@ -157,7 +164,7 @@ fn fastest(all: &[Rival]) -> Frame {
             }
         }
     }
-    Rows::of(best)
+    FrameBuilder::of(best)
         .text("beside", |(rival, ..)| &rival.rival)
         .text("kind", |(.., it)| it.system.split(',').next().unwrap_or_default())
         .text("system", |(.., it)| &it.system)
@@ -171,8 +178,8 @@ fn fastest(all: &[Rival]) -> Frame {
         .frame("fastest", "Our rate over theirs, for our fastest configuration")
 }
 
-fn same(all: &[Rival]) -> Frame {
-    Rows::of(all.iter().flat_map(|rival| rival.same.iter().map(move |it| (rival, it))))
+fn same(all: &[RivalProgram]) -> ResultFrame {
+    FrameBuilder::of(all.iter().flat_map(|rival| rival.same.iter().map(move |it| (rival, it))))
         .text("beside", |(rival, _)| &rival.rival)
         .text("quantity", |(_, it)| &it.what)
         .number("ours", 6, |(_, it)| it.ours)
@@ -181,8 +188,8 @@ fn same(all: &[Rival]) -> Frame {
         .frame("same-physics", "Quantities that both programs compute")
 }
 
-fn memory(all: &[Rival]) -> Frame {
-    Rows::of(all.iter().flat_map(|rival| rival.memory.iter().map(move |it| (rival, it))))
+fn memory(all: &[RivalProgram]) -> ResultFrame {
+    FrameBuilder::of(all.iter().flat_map(|rival| rival.memory.iter().map(move |it| (rival, it))))
         .text("beside", |(rival, _)| &rival.rival)
         .text("system", |(_, it)| &it.system)
         .count("particles", |(_, it)| it.particles)
@@ -191,16 +198,16 @@ fn memory(all: &[Rival]) -> Frame {
         .frame("memory", "Peak memory of both programs")
 }
 
-fn summary(all: &[Rival]) -> Frame {
+fn summary(all: &[RivalProgram]) -> ResultFrame {
     let same = all.iter().flat_map(|rival| &rival.same);
     let differ = same.filter(|it| (it.ours - it.theirs).abs() > it.within).count();
-    Rows::of([differ])
+    FrameBuilder::of([differ])
         .count("quantities that differ", |differ| *differ)
         .frame("summary", "Quantities that should agree between both programs but do not")
 }
 
-fn programs(all: &[Rival]) -> Frame {
-    Rows::of(all)
+fn programs(all: &[RivalProgram]) -> ResultFrame {
+    FrameBuilder::of(all)
         .text("program", |it| &it.rival)
         .text("version", |it| &it.version)
         .text("build", |it| &it.build)
@@ -226,7 +233,7 @@ mod tests {
             for same in &rival.same {
                 assert!((same.ours - same.theirs).abs() <= same.within, "{}: {same:?}", rival.rival);
             }
-            let Measurement { date, commit, command, host } = &rival.source;
+            let RepeatedMeasurement { date, commit, command, host } = &rival.source;
             assert!(!date.is_empty() && !host.is_empty() && command.contains("tests/rivals/"), "{rival:?}");
             assert!(!commit.contains("dirty"), "{} was measured with a changed source", rival.rival);
         }

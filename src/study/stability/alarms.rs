@@ -1,13 +1,13 @@
 //! Correct warnings and false alarms of every limit and check over a map.
 
-use super::dataset::Stability;
-use super::outcome::Cell;
-use crate::frame::{Frame, Rows};
-use crate::study::alarm::{Alarm, Finding};
+use super::dataset::StabilityMap;
+use super::outcome::MapPoint;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::study::alarm::{Alarm, WarningLevel};
 
 /// Record of a limit or check over a map.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Record {
+struct AlarmRecord {
     /// Numbers of right runs, and of wrong runs that finish, with its warning.
     right: usize,
     wrong: usize,
@@ -20,10 +20,10 @@ struct Record {
 }
 
 /// Limits and checks in order of first occurrence; checks during a run are listed apart from those before it.
-fn checks<'c>(cells: impl Iterator<Item = &'c Cell>) -> Vec<(String, bool)> {
+fn checks<'c>(cells: impl Iterator<Item = &'c MapPoint>) -> Vec<(String, bool)> {
     let mut all = vec![];
     for alarm in cells.flat_map(|cell| &cell.alarms) {
-        let key = (alarm.check.clone(), alarm.finding == Finding::WarnedByRun);
+        let key = (alarm.check.clone(), alarm.finding == WarningLevel::WarnedByRun);
         if !all.contains(&key) {
             all.push(key);
         }
@@ -31,11 +31,11 @@ fn checks<'c>(cells: impl Iterator<Item = &'c Cell>) -> Vec<(String, bool)> {
     all
 }
 
-impl Record {
-    fn of<'c>(cells: impl Iterator<Item = &'c Cell>, check: &str, is_by_run: bool) -> Record {
+impl AlarmRecord {
+    fn of<'c>(cells: impl Iterator<Item = &'c MapPoint>, check: &str, is_by_run: bool) -> AlarmRecord {
         let is_it =
-            |alarm: &Alarm| alarm.check == check && (alarm.finding == Finding::WarnedByRun) == is_by_run;
-        cells.fold(Record::default(), |mut record, cell| {
+            |alarm: &Alarm| alarm.check == check && (alarm.finding == WarningLevel::WarnedByRun) == is_by_run;
+        cells.fold(AlarmRecord::default(), |mut record, cell| {
             let Some(alarm) = cell.alarms.iter().find(|alarm| is_it(alarm)) else { return record };
             let tells = alarm.finding.is_told();
             if cell.is_right() {
@@ -56,16 +56,16 @@ impl Record {
 }
 
 /// A row for each limit and check of each map.
-pub(crate) fn alarms(maps: &[(String, Stability)]) -> Frame {
+pub(crate) fn alarms(maps: &[(String, StabilityMap)]) -> ResultFrame {
     let rows = maps.iter().flat_map(|(name, data)| {
-        let [right, wrong] = [Cell::is_right, |cell: &Cell| cell.class.is_unseen()]
-            .map(|belongs: fn(&Cell) -> bool| data.cells().filter(|cell| belongs(cell)).count());
+        let [right, wrong] = [MapPoint::is_right, |cell: &MapPoint| cell.class.is_unseen()]
+            .map(|belongs: fn(&MapPoint) -> bool| data.cells().filter(|cell| belongs(cell)).count());
         checks(data.cells()).into_iter().map(move |(check, is_by_run)| {
-            let record = Record::of(data.cells(), &check, is_by_run);
+            let record = AlarmRecord::of(data.cells(), &check, is_by_run);
             (name, data.method, check, is_by_run, [right, wrong], record)
         })
     });
-    Rows::of(rows)
+    FrameBuilder::of(rows)
         .text("scene", |(name, ..)| *name)
         .text("method", |(_, method, ..)| *method)
         .text("limit or check", |(_, _, check, ..)| check.clone())
@@ -82,40 +82,40 @@ pub(crate) fn alarms(maps: &[(String, Stability)]) -> Frame {
 
 #[cfg(test)]
 mod tests {
-    use super::super::outcome::Class;
+    use super::super::outcome::RunClass;
     use super::*;
-    use crate::study::trial::Cause;
+    use crate::study::trial::FailureCause;
 
-    fn cell(class: Class, is_decided: bool, alarms: &[(&str, Finding, f64)]) -> Cell {
-        let alarm = |&(check, finding, share): &(&str, Finding, f64)| Alarm {
+    fn cell(class: RunClass, is_decided: bool, alarms: &[(&str, WarningLevel, f64)]) -> MapPoint {
+        let alarm = |&(check, finding, share): &(&str, WarningLevel, f64)| Alarm {
             check: check.to_owned(),
             finding,
             share: Some(share),
             message: String::new(),
         };
-        Cell { class, what: String::new(), is_decided, alarms: alarms.iter().map(alarm).collect() }
+        MapPoint { class, what: String::new(), is_decided, alarms: alarms.iter().map(alarm).collect() }
     }
 
     #[test]
     fn hits_and_false_alarms_are_counted_apart() {
-        use Finding::{Refused, Warned, WarnedByRun, Within};
+        use WarningLevel::{Refused, Warned, WarnedByRun, Within};
         let cells = [
-            cell(Class::Works, true, &[("a", Within, 0.5)]),
-            cell(Class::Works, true, &[("a", Warned, 1.5), ("b", WarnedByRun, 2.0)]),
+            cell(RunClass::Works, true, &[("a", Within, 0.5)]),
+            cell(RunClass::Works, true, &[("a", Warned, 1.5), ("b", WarnedByRun, 2.0)]),
             // Neither right nor wrong with certainty.
-            cell(Class::Works, false, &[("a", Warned, 9.0)]),
-            cell(Class::Silent, true, &[("a", Refused, 4.0), ("b", WarnedByRun, 3.0)]),
-            cell(Class::EnergyGrowth, true, &[("a", Warned, 3.0), ("c", Within, 0.9)]),
-            cell(Class::Failed(Cause::Penetration), true, &[("a", Warned, 1.1)]),
+            cell(RunClass::Works, false, &[("a", Warned, 9.0)]),
+            cell(RunClass::Silent, true, &[("a", Refused, 4.0), ("b", WarnedByRun, 3.0)]),
+            cell(RunClass::EnergyGrowth, true, &[("a", Warned, 3.0), ("c", Within, 0.9)]),
+            cell(RunClass::Failed(FailureCause::Penetration), true, &[("a", Warned, 1.1)]),
         ];
         let checks = checks(cells.iter());
         let named = |name: &str, by_run: bool| (name.to_owned(), by_run);
         assert_eq!(checks, [named("a", false), named("b", true), named("c", false)]);
-        let a = Record::of(cells.iter(), "a", false);
+        let a = AlarmRecord::of(cells.iter(), "a", false);
         let expected =
-            Record { right: 1, wrong: 2, alone: 1, largest_right: Some(1.5), smallest_alone: Some(3.0) };
+            AlarmRecord { right: 1, wrong: 2, alone: 1, largest_right: Some(1.5), smallest_alone: Some(3.0) };
         assert_eq!(a, expected);
-        let b = Record::of(cells.iter(), "b", true);
+        let b = AlarmRecord::of(cells.iter(), "b", true);
         assert_eq!((b.right, b.wrong, b.alone, b.smallest_alone), (1, 1, 0, None));
     }
 }

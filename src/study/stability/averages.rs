@@ -1,7 +1,7 @@
 //! Means over the second half of a run: of the quantities in the trials of a method, and of the density along each side.
 
 use crate::study::Subject;
-use crate::study::state::State;
+use crate::study::state::ParticleState;
 use std::collections::BTreeMap;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::Simulation;
@@ -14,22 +14,22 @@ const BINS: usize = 8;
 const PROFILE: &str = "density profile";
 
 /// Means of a run over time: a value for each observable, and the profile.
-pub(crate) type Means = BTreeMap<String, Vec<f64>>;
+pub(crate) type ObservedMeans = BTreeMap<String, Vec<f64>>;
 
 /// Running averages of a run.
-pub(crate) struct Averages<'s> {
+pub(crate) struct RunningMeans<'s> {
     subject: &'s Subject,
     domain: Domain,
     looks: u64,
-    pub(crate) means: Means,
+    pub(crate) means: ObservedMeans,
     /// Mean of the root mean square speed (length/time).
     pub speed: f64,
 }
 
-impl<'s> Averages<'s> {
+impl<'s> RunningMeans<'s> {
     /// Starts the averages of a run in a box.
     pub(super) fn new(subject: &'s Subject, domain: Domain) -> Self {
-        Averages { subject, domain, looks: 0, means: Means::new(), speed: 0.0 }
+        RunningMeans { subject, domain, looks: 0, means: ObservedMeans::new(), speed: 0.0 }
     }
 
     /// Takes a sample with observed `values`; samples of the first half do not count.
@@ -40,7 +40,7 @@ impl<'s> Averages<'s> {
         }
         let observed =
             self.subject.watched().map(|watched| (watched.name.to_owned(), vec![values[watched.place]]));
-        let state = State::of(&simulation.particles());
+        let state = ParticleState::of(&simulation.particles());
         let profile = profile(&state, &self.domain);
         let share = 1.0 / (LOOKS + 1 - LOOKS / 2) as f64;
         self.speed += share * state.speed();
@@ -52,7 +52,7 @@ impl<'s> Averages<'s> {
 }
 
 /// True if these can be means of a run of the scene: the right names, each with the right number of values, all finite.
-pub(crate) fn are_of(subject: &Subject, means: &Means) -> bool {
+pub(crate) fn are_of(subject: &Subject, means: &ObservedMeans) -> bool {
     let expected: BTreeMap<&str, usize> =
         subject.watched().map(|watched| (watched.name, 1)).chain([(PROFILE, 2 * BINS)]).collect();
     means.iter().map(|(name, values)| (name.as_str(), values.len())).eq(expected)
@@ -60,7 +60,7 @@ pub(crate) fn are_of(subject: &Subject, means: &Means) -> bool {
 }
 
 /// Density profile: share of the particles in each bin, along one side of the box and then the other, times the number of bins; 1 where uniform.
-fn profile(state: &State, domain: &Domain) -> Vec<f64> {
+fn profile(state: &ParticleState, domain: &Domain) -> Vec<f64> {
     let mut bins = vec![0.0; 2 * BINS];
     for position in state.positions() {
         let inside = domain.wrapped(position);

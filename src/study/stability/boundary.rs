@@ -2,7 +2,7 @@
 
 /// Stability boundary along the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Edge {
+pub(crate) enum StepBoundary {
     /// Even the smallest step fails.
     Below,
     /// Largest working step and smallest failing step found (time), within the tolerance of each other.
@@ -10,12 +10,12 @@ pub(crate) enum Edge {
     Above,
 }
 
-impl Edge {
+impl StepBoundary {
     /// Geometric mean of the two steps (time).
     pub(crate) fn step(self) -> Option<f64> {
         match self {
-            Edge::Between([works, fails]) => Some((works * fails).sqrt()),
-            Edge::Below | Edge::Above => None,
+            StepBoundary::Between([works, fails]) => Some((works * fails).sqrt()),
+            StepBoundary::Below | StepBoundary::Above => None,
         }
     }
 }
@@ -27,7 +27,7 @@ pub(crate) fn edge<E>(
     guess: usize,
     tolerance: f64,
     mut works: impl FnMut(f64) -> Result<bool, E>,
-) -> Result<Edge, E> {
+) -> Result<StepBoundary, E> {
     let mut first = guess.min(steps.len());
     while first < steps.len() && works(steps[first])? {
         first += 1;
@@ -36,10 +36,10 @@ pub(crate) fn edge<E>(
         first -= 1;
     }
     if first == 0 {
-        return Ok(Edge::Below);
+        return Ok(StepBoundary::Below);
     }
     if first == steps.len() {
-        return Ok(Edge::Above);
+        return Ok(StepBoundary::Above);
     }
     let [mut low, mut high] = [steps[first - 1], steps[first]];
     while high > low * (1.0 + tolerance) {
@@ -50,7 +50,7 @@ pub(crate) fn edge<E>(
             high = middle;
         }
     }
-    Ok(Edge::Between([low, high]))
+    Ok(StepBoundary::Between([low, high]))
 }
 
 #[cfg(test)]
@@ -64,9 +64,9 @@ mod tests {
         for guess in 0..6 {
             let found =
                 |limit: f64| edge(&steps, guess, 0.01, |step| Ok::<_, Infallible>(step <= limit)).unwrap();
-            assert_eq!((found(0.5), found(8.0)), (Edge::Below, Edge::Above));
+            assert_eq!((found(0.5), found(8.0)), (StepBoundary::Below, StepBoundary::Above));
             for limit in [1.0, 3.3, 7.9] {
-                let Edge::Between([low, high]) = found(limit) else { panic!("{guess} {limit}") };
+                let StepBoundary::Between([low, high]) = found(limit) else { panic!("{guess} {limit}") };
                 assert!(low <= limit && limit < high && high <= 1.01 * low, "{low} {limit} {high}");
             }
         }

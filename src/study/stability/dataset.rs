@@ -1,15 +1,15 @@
 //! Results of a stability map.
 
-use super::boundary::Edge;
-use super::outcome::{Cell, Class};
+use super::boundary::StepBoundary;
+use super::outcome::{MapPoint, RunClass};
 use crate::statistics::median;
 use crate::study::Subject;
-use crate::study::alarm::Finding;
-use stripmine_physics::method::{Beyond, Parameter};
+use crate::study::alarm::WarningLevel;
+use stripmine_physics::method::{LimitConsequence, Parameter};
 
 /// Runs of a scene over the step and a parameter, with the boundaries between classes.
 #[derive(Clone, Debug)]
-pub(crate) struct Stability {
+pub(crate) struct StabilityMap {
     /// Name of the method.
     pub method: &'static str,
     pub(crate) configuration: String,
@@ -20,19 +20,19 @@ pub(crate) struct Stability {
     pub duration: f64,
     /// Parts omitted to save time, in words.
     pub left_out: Option<String>,
-    pub(crate) parameter: Varied,
+    pub(crate) parameter: VariedParameter,
     /// Values of the parameter, rising.
     pub values: Vec<f64>,
     /// Steps, rising (time).
     pub steps: Vec<f64>,
     /// Runs of the first seed: `map[i][j]` has value i and step j.
-    pub map: Vec<Vec<Cell>>,
+    pub map: Vec<Vec<MapPoint>>,
     /// Boundaries at each value.
     pub(crate) boundaries: Vec<Boundary>,
     /// Tolerance of a boundary, in parts of the step.
     pub(crate) tolerance: f64,
     /// Theoretical limits of the step.
-    pub(crate) limits: Vec<Limit>,
+    pub(crate) limits: Vec<TheoryLimit>,
     /// Values of the parameter with a theoretical meaning.
     pub(crate) marks: Vec<(f64, String)>,
     /// Boundaries of every integrator, at the scene's own value.
@@ -45,7 +45,7 @@ pub(crate) struct Stability {
 
 /// Parameter varied besides the step.
 #[derive(Clone, Debug)]
-pub(crate) struct Varied {
+pub(crate) struct VariedParameter {
     pub name: &'static str,
     pub label: &'static str,
     /// Unit; none for a pure number.
@@ -54,11 +54,11 @@ pub(crate) struct Varied {
     pub(crate) is_logarithmic: bool,
 }
 
-impl Varied {
+impl VariedParameter {
     /// Describes a parameter of a scene.
-    pub(crate) fn of(parameter: &Parameter, subject: &Subject) -> Varied {
+    pub(crate) fn of(parameter: &Parameter, subject: &Subject) -> VariedParameter {
         let Parameter { name, label, unit, is_logarithmic, .. } = *parameter;
-        Varied { name, label, unit: subject.unit(unit), is_logarithmic }
+        VariedParameter { name, label, unit: subject.unit(unit), is_logarithmic }
     }
 }
 
@@ -66,13 +66,13 @@ impl Varied {
 #[derive(Clone, Debug)]
 pub(crate) struct Boundary {
     /// Longest steps of right runs.
-    pub works: Vec<Edge>,
+    pub works: Vec<StepBoundary>,
     /// Longest steps of runs that finish.
-    pub ends: Vec<Edge>,
+    pub ends: Vec<StepBoundary>,
 }
 
 /// Median of boundaries over seeds, with the lowest and the highest (time); none unless every seed has one.
-pub(crate) fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
+pub(crate) fn over_seeds(edges: &[StepBoundary]) -> Option<[f64; 3]> {
     let steps: Option<Vec<f64>> = edges.iter().map(|edge| edge.step()).collect();
     let mut steps = steps.filter(|steps| !steps.is_empty())?;
     steps.sort_by(f64::total_cmp);
@@ -81,10 +81,10 @@ pub(crate) fn over_seeds(edges: &[Edge]) -> Option<[f64; 3]> {
 
 /// Theoretical limit of the step.
 #[derive(Clone, Debug)]
-pub(crate) struct Limit {
+pub(crate) struct TheoryLimit {
     pub name: &'static str,
     /// Effect of longer steps.
-    pub beyond: Beyond,
+    pub beyond: LimitConsequence,
     /// Pairs of value and step (time).
     pub(crate) points: Vec<(f64, f64)>,
 }
@@ -95,14 +95,14 @@ pub(crate) struct SchemeLimit {
     pub scheme: String,
     pub(crate) edges: Boundary,
     /// Class of the first step that is no longer right, in the first seed.
-    pub first: Option<Class>,
+    pub first: Option<RunClass>,
     /// Step beyond which theory predicts growing errors (time), and the name of the limit.
     pub theory: Option<(f64, &'static str)>,
 }
 
 /// Numbers of runs of some classes, by the warnings that users get.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Said {
+pub(crate) struct WarningCounts {
     pub all: usize,
     pub refused: usize,
     /// Warned of before the run.
@@ -113,20 +113,20 @@ pub(crate) struct Said {
     pub(crate) unsaid: usize,
 }
 
-impl Stability {
-    pub(crate) fn cells(&self) -> impl Iterator<Item = &Cell> {
+impl StabilityMap {
+    pub(crate) fn cells(&self) -> impl Iterator<Item = &MapPoint> {
         self.map.iter().flatten()
     }
 
     /// Counts the runs that belong to some classes.
-    pub(crate) fn said(&self, belongs: impl Fn(&Cell) -> bool) -> Said {
-        self.cells().filter(|cell| belongs(cell)).fold(Said::default(), |mut said, cell| {
+    pub(crate) fn said(&self, belongs: impl Fn(&MapPoint) -> bool) -> WarningCounts {
+        self.cells().filter(|cell| belongs(cell)).fold(WarningCounts::default(), |mut said, cell| {
             said.all += 1;
             let is_warned = !cell.warned_by_run().is_empty();
             said.warned_by_run += usize::from(is_warned);
             match cell.foreseen() {
-                Finding::Refused => said.refused += 1,
-                Finding::Warned => said.warned_before += 1,
+                WarningLevel::Refused => said.refused += 1,
+                WarningLevel::Warned => said.warned_before += 1,
                 _ => said.unsaid += usize::from(!is_warned),
             }
             said
@@ -135,7 +135,7 @@ impl Stability {
 
     /// Smallest step beyond which theory predicts growing errors, at a value (time), and the name of the limit.
     pub(crate) fn unstable_beyond(&self, value: f64) -> Option<(f64, &'static str)> {
-        let unstable = self.limits.iter().filter(|limit| limit.beyond == Beyond::Unstable);
+        let unstable = self.limits.iter().filter(|limit| limit.beyond == LimitConsequence::Unstable);
         let at = unstable.filter_map(|limit| {
             let (_, step) = limit.points.iter().find(|(known, _)| *known == value)?;
             Some((*step, limit.name))

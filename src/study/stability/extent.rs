@@ -20,7 +20,7 @@ const PLANNED: f64 = 0.38;
 
 /// Costs of runs.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Costs {
+pub(crate) struct MapCosts {
     /// Seconds of a step.
     pub(crate) each: f64,
     /// Seconds before the first step of a run.
@@ -31,7 +31,7 @@ pub(crate) struct Costs {
 
 /// Size of a map and length of its runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Extent {
+pub(crate) struct MapExtent {
     /// Number of values of the parameter, and of steps.
     pub size: usize,
     /// Number of seeds of the boundaries.
@@ -46,7 +46,7 @@ fn parts(size: usize) -> Vec<f64> {
     super::ladder(STEPS, size, true)
 }
 
-impl Costs {
+impl MapCosts {
     /// Seconds of a map: per own step of a run's length, and for the starts of all runs.
     fn of_map(&self, size: usize, seeds: u64) -> [f64; 2] {
         let parts = parts(size);
@@ -64,13 +64,18 @@ impl Costs {
     ///
     /// # Errors
     /// [`StudyError::TooLittleTime`] where the smallest map takes longer.
-    pub(crate) fn extent(&self, budget: f64, asked: (usize, u64), scene: f64) -> Result<Extent, StudyError> {
+    pub(crate) fn extent(
+        &self,
+        budget: f64,
+        asked: (usize, u64),
+        scene: f64,
+    ) -> Result<MapExtent, StudyError> {
         let planned = PLANNED * budget;
         let fitting = |size: usize, seeds: u64, least: f64| {
             let [each, starts] = self.of_map(size, seeds);
             let own_steps = ((planned - starts) / each).min(scene);
             let seconds = starts + each * own_steps;
-            (own_steps >= least.min(scene)).then_some(Extent { size, seeds, own_steps, seconds })
+            (own_steps >= least.min(scene)).then_some(MapExtent { size, seeds, own_steps, seconds })
         };
         let sizes = (SMALLEST.min(asked.0)..=asked.0).rev();
         let mut all = sizes.flat_map(|size| (1..=asked.1).rev().map(move |seeds| (size, seeds)));
@@ -84,7 +89,7 @@ impl Costs {
     }
 }
 
-impl Extent {
+impl MapExtent {
     /// Describes the parts omitted to save time; none where the map is complete.
     pub(crate) fn left_out(&self, (size, seeds): (usize, u64), scene: f64) -> Option<String> {
         let mut all = vec![];
@@ -114,7 +119,7 @@ mod tests {
         for budget in [1.0, 5.0, 30.0, 300.0, 3000.0] {
             for each in [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1] {
                 for start in [1e-5, 1e-3, 0.02, 0.5] {
-                    let costs = Costs { each, start, schemes: 3 };
+                    let costs = MapCosts { each, start, schemes: 3 };
                     match costs.extent(budget, ASKED, 50_000.0) {
                         Ok(extent) => {
                             let [steps, starts] = costs.of_map(extent.size, extent.seeds);
@@ -137,7 +142,7 @@ mod tests {
                     }
                 }
             }
-            let size = Costs { each: 5e-5, start: 5e-3, schemes: 3 }
+            let size = MapCosts { each: 5e-5, start: 5e-3, schemes: 3 }
                 .extent(budget, ASKED, 50_000.0)
                 .map_or(0, |it| it.size);
             assert!(size >= last, "{budget}");
@@ -150,7 +155,7 @@ mod tests {
     /// 2, starts: 3 (3 + 8 + 8) + 8 + 8.
     #[test]
     fn a_map_costs_its_steps_and_starts() {
-        let [steps, starts] = Costs { each: 1.0, start: 1.0, schemes: 1 }.of_map(3, 1);
+        let [steps, starts] = MapCosts { each: 1.0, start: 1.0, schemes: 1 }.of_map(3, 1);
         assert!((steps - (3.0 * (20.0 + 0.125 + 1.0 / 128.0) + 18.0)).abs() < 1e-9, "{steps}");
         assert_eq!(starts, 73.0);
     }

@@ -1,21 +1,21 @@
 //! Frames of stability maps.
 
 use super::alarms::alarms;
-use super::boundary::Edge;
-use super::dataset::{Boundary, SchemeLimit, Stability, over_seeds};
-use super::outcome::{self, Class};
-use crate::frame::{Cell, Frame, Rows};
-use crate::results::Made;
+use super::boundary::StepBoundary;
+use super::dataset::{Boundary, SchemeLimit, StabilityMap, over_seeds};
+use super::outcome::{self, RunClass};
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::results::FinishedItem;
 use crate::statistics::median;
-use crate::study::alarm::{Alarm, Finding};
+use crate::study::alarm::{Alarm, WarningLevel};
 
-type Maps = [(String, Stability)];
+type Maps = [(String, StabilityMap)];
 
 /// Boundaries of different seeds disagree if they are more than this many tolerances apart.
 const APART: f64 = 2.0;
 
 /// Returns the frames of maps, each with a name for its rows.
-pub(crate) fn made(maps: &Maps) -> Made {
+pub(crate) fn made(maps: &Maps) -> FinishedItem {
     let seeds = maps.first().map_or(vec![], |(_, data)| data.seeds.clone());
     let frames = [
         of_maps(maps),
@@ -29,11 +29,11 @@ pub(crate) fn made(maps: &Maps) -> Made {
         lines(maps),
         unjudged(maps),
     ];
-    Made::of(frames).with_seeds(seeds)
+    FinishedItem::of(frames).with_seeds(seeds)
 }
 
 /// Ratio of the stability boundary to the step beyond which theory predicts growing errors: median, lowest and highest over the values.
-fn of_theory(data: &Stability) -> Option<[f64; 3]> {
+fn of_theory(data: &StabilityMap) -> Option<[f64; 3]> {
     let at = data.values.iter().zip(&data.boundaries);
     let ratio = |(&value, boundary): (&f64, &Boundary)| {
         Some(over_seeds(&boundary.works)?[0] / data.unstable_beyond(value)?.0)
@@ -44,24 +44,24 @@ fn of_theory(data: &Stability) -> Option<[f64; 3]> {
 }
 
 /// A row for each map: its axes, numbers of runs by kind, and boundaries compared with theory and over seeds.
-fn of_maps(maps: &Maps) -> Frame {
-    let count = |of: fn(&Stability) -> usize| move |(_, data): &&(String, Stability)| of(data);
+fn of_maps(maps: &Maps) -> ResultFrame {
+    let count = |of: fn(&StabilityMap) -> usize| move |(_, data): &&(String, StabilityMap)| of(data);
     let theory =
-        |which: usize| move |(_, data): &&(String, Stability)| of_theory(data).map(|ratios| ratios[which]);
-    let spreads = |data: &Stability| {
+        |which: usize| move |(_, data): &&(String, StabilityMap)| of_theory(data).map(|ratios| ratios[which]);
+    let spreads = |data: &StabilityMap| {
         let spreads = data.boundaries.iter().filter_map(|boundary| {
             let [_, low, high] = over_seeds(&boundary.works)?;
             Some(high / low - 1.0)
         });
         spreads.collect::<Vec<f64>>()
     };
-    let own = |data: &Stability| {
+    let own = |data: &StabilityMap| {
         data.schemes
             .iter()
             .find(|scheme| data.configuration.split(' ').any(|part| part == scheme.scheme))
             .cloned()
     };
-    Rows::of(maps)
+    FrameBuilder::of(maps)
         .text("scene", |(name, _)| name)
         .text("method", |(_, data)| data.method)
         .text("configuration", |(_, data)| &data.configuration)
@@ -78,18 +78,18 @@ fn of_maps(maps: &Maps) -> Frame {
         .count("seeds", |(_, data)| data.seeds.len())
         .number("tolerance of an edge", 3, |(_, data)| data.tolerance)
         .count("places", count(|data| data.cells().count()))
-        .count("right", count(|data| data.said(outcome::Cell::is_right).all))
-        .count("right and refused", count(|data| data.said(outcome::Cell::is_right).refused))
+        .count("right", count(|data| data.said(outcome::MapPoint::is_right).all))
+        .count("right and refused", count(|data| data.said(outcome::MapPoint::is_right).refused))
         .count(
             "right and warned of",
             count(|data| {
-                let said = data.said(outcome::Cell::is_right);
+                let said = data.said(outcome::MapPoint::is_right);
                 said.all - said.unsaid - said.refused
             }),
         )
         .count(
             "undecided",
-            count(|data| data.said(|cell| cell.class == Class::Works && !cell.is_decided).all),
+            count(|data| data.said(|cell| cell.class == RunClass::Works && !cell.is_decided).all),
         )
         .count("wrong", count(|data| data.said(|cell| cell.class.is_unseen()).all))
         .count("wrong and refused", count(|data| data.said(|cell| cell.class.is_unseen()).refused))
@@ -115,25 +115,29 @@ fn of_maps(maps: &Maps) -> Frame {
 }
 
 /// Boundaries in multiples of the scene's own step: median, lowest and highest over the seeds.
-fn multiples(data: &Stability, edges: &[Edge]) -> [Cell; 3] {
-    let numbers = over_seeds(edges).map(|steps| steps.map(|step| Cell::Number(step / data.step, 2)));
-    numbers.unwrap_or([const { Cell::Nothing }; 3])
+fn multiples(data: &StabilityMap, edges: &[StepBoundary]) -> [TableCell; 3] {
+    let numbers = over_seeds(edges).map(|steps| steps.map(|step| TableCell::Number(step / data.step, 2)));
+    numbers.unwrap_or([const { TableCell::Nothing }; 3])
 }
 
 /// Position of a boundary that lies outside the map.
-fn beyond(edges: &[Edge]) -> Option<&'static str> {
+fn beyond(edges: &[StepBoundary]) -> Option<&'static str> {
     match edges {
         _ if over_seeds(edges).is_some() => None,
-        [Edge::Above, ..] if edges.iter().all(|edge| *edge == Edge::Above) => Some("above the map"),
-        [Edge::Below, ..] if edges.iter().all(|edge| *edge == Edge::Below) => Some("below the map"),
+        [StepBoundary::Above, ..] if edges.iter().all(|edge| *edge == StepBoundary::Above) => {
+            Some("above the map")
+        }
+        [StepBoundary::Below, ..] if edges.iter().all(|edge| *edge == StepBoundary::Below) => {
+            Some("below the map")
+        }
         _ => Some("not in every seed"),
     }
 }
 
-fn schemes(maps: &Maps) -> Frame {
+fn schemes(maps: &Maps) -> ResultFrame {
     let schemes =
         maps.iter().flat_map(|(name, data)| data.schemes.iter().map(move |scheme| (name, data, scheme)));
-    Rows::of(schemes)
+    FrameBuilder::of(schemes)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(.., scheme)| &scheme.scheme)
         .cells(["works up to (own steps)", "lowest seed", "highest seed"], |(_, data, scheme)| {
@@ -146,15 +150,15 @@ fn schemes(maps: &Maps) -> Frame {
             scheme.theory.map(|(step, _)| step / data.step)
         })
         .cell("by", |(.., scheme)| scheme.theory.map(|(_, what)| what))
-        .cell("what comes first beyond", |(.., scheme)| scheme.first.map(Class::name))
+        .cell("what comes first beyond", |(.., scheme)| scheme.first.map(RunClass::name))
         .frame("integrators", "The largest step of each integrator, at the scene's own values")
 }
 
-fn said(maps: &Maps) -> Frame {
+fn said(maps: &Maps) -> ResultFrame {
     let classes = maps.iter().flat_map(|(name, data)| {
-        Class::BEGUN.map(|class| (name, class, data.said(|cell| cell.class == class)))
+        RunClass::BEGUN.map(|class| (name, class, data.said(|cell| cell.class == class)))
     });
-    Rows::of(classes.filter(|(.., said)| said.all > 0))
+    FrameBuilder::of(classes.filter(|(.., said)| said.all > 0))
         .text("scene", |(name, ..)| *name)
         .text("what becomes of it", |(_, class, _)| class.name())
         .number("places", 0, |(.., said)| said.all as f64)
@@ -166,19 +170,19 @@ fn said(maps: &Maps) -> Frame {
 }
 
 /// All runs of all maps.
-fn cells(maps: &Maps) -> Frame {
+fn cells(maps: &Maps) -> ResultFrame {
     let cells = maps.iter().flat_map(|(name, data)| {
         let rows = data.values.iter().zip(&data.map);
         rows.flat_map(move |(value, cells)| {
             data.steps.iter().zip(cells).map(move |(step, cell)| (name, data, value, step, cell))
         })
     });
-    let foreseen = |foreseen: Finding| match foreseen {
-        Finding::Warned => "warned",
-        Finding::Refused => "refused",
+    let foreseen = |foreseen: WarningLevel| match foreseen {
+        WarningLevel::Warned => "warned",
+        WarningLevel::Refused => "refused",
         _ => "nothing",
     };
-    Rows::of(cells)
+    FrameBuilder::of(cells)
         .text("scene", |(name, ..)| *name)
         .text("parameter", |(_, data, ..)| data.parameter.name)
         .number("value", 6, |(_, _, value, ..)| **value)
@@ -193,7 +197,7 @@ fn cells(maps: &Maps) -> Frame {
 }
 
 /// Boundaries of all seeds.
-fn boundaries(maps: &Maps) -> Frame {
+fn boundaries(maps: &Maps) -> ResultFrame {
     let edges = maps.iter().flat_map(|(name, data)| {
         let boundaries = data.values.iter().zip(&data.boundaries);
         boundaries.flat_map(move |(value, boundary)| {
@@ -203,17 +207,17 @@ fn boundaries(maps: &Maps) -> Frame {
             })
         })
     });
-    let does = |data: &Stability, edge: &Edge| match edge {
-        Edge::Below => None,
-        Edge::Between([low, _]) => Some(*low),
-        Edge::Above => Some(data.steps[data.steps.len() - 1]),
+    let does = |data: &StabilityMap, edge: &StepBoundary| match edge {
+        StepBoundary::Below => None,
+        StepBoundary::Between([low, _]) => Some(*low),
+        StepBoundary::Above => Some(data.steps[data.steps.len() - 1]),
     };
-    let does_not = |data: &Stability, edge: &Edge| match edge {
-        Edge::Below => Some(data.steps[0]),
-        Edge::Between([_, high]) => Some(*high),
-        Edge::Above => None,
+    let does_not = |data: &StabilityMap, edge: &StepBoundary| match edge {
+        StepBoundary::Below => Some(data.steps[0]),
+        StepBoundary::Between([_, high]) => Some(*high),
+        StepBoundary::Above => None,
     };
-    Rows::of(edges)
+    FrameBuilder::of(edges)
         .text("scene", |(name, ..)| *name)
         .text("parameter", |(_, data, ..)| data.parameter.name)
         .number("value", 6, |(_, _, value, ..)| **value)
@@ -226,12 +230,12 @@ fn boundaries(maps: &Maps) -> Frame {
 
 /// Ratio of each integrator's longest working step to the step beyond which theory predicts growing errors, at the scene's own
 /// values.
-fn pairs(maps: &Maps) -> Frame {
+fn pairs(maps: &Maps) -> ResultFrame {
     let pairs = maps.iter().flat_map(|(name, data)| {
         let of = |scheme: &SchemeLimit| Some(over_seeds(&scheme.edges.works)?[0] / scheme.theory?.0);
         data.schemes.iter().filter_map(move |scheme| Some((name, &scheme.scheme, of(scheme)?)))
     });
-    Rows::of(pairs)
+    FrameBuilder::of(pairs)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, scheme, _)| *scheme)
         .number("edge over theory", 3, |(.., ratio)| *ratio)
@@ -239,7 +243,7 @@ fn pairs(maps: &Maps) -> Frame {
 }
 
 /// Stability boundary over the seeds, and the theoretical step, at every value.
-fn edges(maps: &Maps) -> Frame {
+fn edges(maps: &Maps) -> ResultFrame {
     let at = maps.iter().flat_map(|(name, data)| {
         data.values.iter().zip(&data.boundaries).map(move |(value, boundary)| {
             let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
@@ -247,7 +251,7 @@ fn edges(maps: &Maps) -> Frame {
             (name, *value, over_seeds(&boundary.works), theory)
         })
     });
-    Rows::of(at)
+    FrameBuilder::of(at)
         .text("scene", |(name, ..)| *name)
         .number("value", 6, |(_, value, ..)| *value)
         .number("works up to", 6, |(.., edge, _)| edge.map(|edge| edge[0]))
@@ -259,8 +263,8 @@ fn edges(maps: &Maps) -> Frame {
 }
 
 /// Straight lines of the maps, by their ends: the scene's own step, and parameter values with a theoretical meaning.
-fn lines(maps: &Maps) -> Frame {
-    let ends = |(name, data): &(String, Stability)| {
+fn lines(maps: &Maps) -> ResultFrame {
+    let ends = |(name, data): &(String, StabilityMap)| {
         let [low, high] = [data.steps[0], data.steps[data.steps.len() - 1]];
         let [first, last] = [data.values[0], data.values[data.values.len() - 1]];
         let own =
@@ -271,7 +275,7 @@ fn lines(maps: &Maps) -> Frame {
             .flat_map(|(at, what)| [low, high].map(|step| (name.clone(), what.clone(), *at, step)));
         own.into_iter().chain(marks).collect::<Vec<_>>()
     };
-    Rows::of(maps.iter().flat_map(ends))
+    FrameBuilder::of(maps.iter().flat_map(ends))
         .text("scene", |(name, ..)| name.clone())
         .text("line", |(_, line, ..)| line.clone())
         .number("value", 6, |(.., value, _)| *value)
@@ -280,9 +284,9 @@ fn lines(maps: &Maps) -> Frame {
 }
 
 /// Values without a reference.
-fn unjudged(maps: &Maps) -> Frame {
+fn unjudged(maps: &Maps) -> ResultFrame {
     let all = maps.iter().flat_map(|(name, data)| data.unjudged.iter().map(move |it| (name, it)));
-    Rows::of(all)
+    FrameBuilder::of(all)
         .text("scene", |(name, _)| *name)
         .number("value", 6, |(_, (value, _))| *value)
         .text("reason", |(_, (_, why))| why)

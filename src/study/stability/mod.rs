@@ -18,19 +18,19 @@ mod tests;
 
 pub(crate) use frames::made;
 
-use dataset::{Boundary, Limit, Stability, Varied};
-use outcome::{Cell, Class};
+use dataset::{Boundary, StabilityMap, TheoryLimit, VariedParameter};
+use outcome::{MapPoint, RunClass};
 
-use super::choice::Choice;
-use super::runs::Runs;
-use super::trial::{RunFailure, Trial};
+use super::choice::SettingChoice;
+use super::runs::StudyRuns;
+use super::trial::{RunFailure, TrialControl};
 use super::{StudyError, Subject};
-use crate::results::{Journal, Meter, Progress, side_by_side};
+use crate::results::{Journal, Progress, ProgressMeter, side_by_side};
 use crate::statistics::median;
-use extent::Costs;
-use stripmine_physics::method::{Decides, Parameter, Purpose};
+use extent::MapCosts;
+use stripmine_physics::method::{ChoiceEffect, Parameter, StartPurpose};
 use stripmine_physics::number::significant;
-use survey::{Survey, Variant};
+use survey::{MapVariant, Survey};
 
 /// Shortest and longest step, in steps of the scene.
 const STEPS: [f64; 2] = [0.5, 128.0];
@@ -41,7 +41,7 @@ const TRIED: usize = 8;
 
 /// Extent and accuracy of a map.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Effort {
+pub(crate) struct MapEffort {
     /// Available processor seconds.
     pub budget: f64,
     /// Most values of the parameter, and most steps.
@@ -54,12 +54,12 @@ pub(crate) struct Effort {
 
 /// Parameter that is varied, and its range.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Over {
+pub(crate) struct VariedRange {
     parameter: &'static Parameter,
     range: [f64; 2],
 }
 
-impl Over {
+impl VariedRange {
     /// Selects a parameter by name, or the first that the scene sets; its range is the requested one, or lies around the scene's own value.
     ///
     /// # Errors
@@ -68,7 +68,7 @@ impl Over {
         subject: &Subject,
         name: Option<&str>,
         asked: Option<[f64; 2]>,
-    ) -> Result<Over, StudyError> {
+    ) -> Result<VariedRange, StudyError> {
         let all = subject.trials.parameters;
         let known = || all.iter().map(|parameter| parameter.name).collect();
         let is_meant = |parameter: &&Parameter| match name {
@@ -89,7 +89,7 @@ impl Over {
         if !is_allowed {
             return Err(StudyError::OutOfRange { name: parameter.name, range, bounds: parameter.bounds });
         }
-        Ok(Over { parameter, range })
+        Ok(VariedRange { parameter, range })
     }
 
     /// Name of the parameter.
@@ -116,18 +116,18 @@ fn ladder([low, high]: [f64; 2], count: usize, is_logarithmic: bool) -> Vec<f64>
 /// [`StudyError`] if no run works, the user interrupts, or finished runs cannot be recorded.
 pub(crate) fn stability(
     subject: &Subject,
-    Over { parameter, range }: Over,
-    effort: &Effort,
-    trial: Trial<'_>,
+    VariedRange { parameter, range }: VariedRange,
+    effort: &MapEffort,
+    trial: TrialControl<'_>,
     journal: &Journal,
     progress: Progress<'_>,
-) -> Result<Stability, StudyError> {
-    let meter = Meter::new(effort.budget, progress);
-    let runs = Runs { subject, trial, journal, meter: &meter };
+) -> Result<StabilityMap, StudyError> {
+    let meter = ProgressMeter::new(effort.budget, progress);
+    let runs = StudyRuns { subject, trial, journal, meter: &meter };
     let schemes = schemes(subject);
     let [each, start] = journal.once(|| probe(&runs, parameter, range))?;
     let (asked, scene) = ((effort.size, effort.seeds), subject.steps as f64);
-    let extent = Costs { each, start, schemes: schemes.len() }.extent(effort.budget, asked, scene)?;
+    let extent = MapCosts { each, start, schemes: schemes.len() }.extent(effort.budget, asked, scene)?;
     meter.expect(extent.seconds);
     let values = ladder(range, extent.size, parameter.is_logarithmic);
     let steps = ladder(STEPS.map(|factor| factor * subject.step), extent.size, true);
@@ -135,14 +135,14 @@ pub(crate) fn stability(
     let seeds: Vec<u64> = (1..=extent.seeds).collect();
     let (runs, tolerance) = (&runs, effort.tolerance);
     let survey = Survey { runs, parameter, steps: &steps, duration, each, seeds: &seeds, tolerance };
-    let own = |value: f64| Variant { choice: &subject.own, value: Some(value) };
-    let column = |&value: &f64| -> Result<(Vec<Cell>, Boundary, Option<String>), StudyError> {
+    let own = |value: f64| MapVariant { choice: &subject.own, value: Some(value) };
+    let column = |&value: &f64| -> Result<(Vec<MapPoint>, Boundary, Option<String>), StudyError> {
         let known = survey.known(Some(value))?;
         let cells = side_by_side(&steps, |&step| survey.cell(own(value), &known, step, 1))?;
-        let first = |is_so: fn(Class) -> bool| {
+        let first = |is_so: fn(RunClass) -> bool| {
             cells.iter().position(|cell| !is_so(cell.class)).unwrap_or(cells.len())
         };
-        let guesses = [first(|class| class == Class::Works), first(Class::ends)];
+        let guesses = [first(|class| class == RunClass::Works), first(RunClass::ends)];
         let boundary = survey.boundary(own(value), &known, guesses)?;
         Ok((cells, boundary, known.err()))
     };
@@ -153,20 +153,20 @@ pub(crate) fn stability(
         boundaries.push(boundary);
         unjudged.extend(why.map(|why| (value, why)));
     }
-    if map.iter().flatten().all(|cell| cell.class != Class::Works) {
+    if map.iter().flatten().all(|cell| cell.class != RunClass::Works) {
         return Err(StudyError::EveryRunFails { tried: tried(&values, &steps, &map, parameter) });
     }
     let known = journal.once(|| survey.known(None))?;
     let schemes = journal.over(&schemes, |scheme| survey.scheme(scheme, &known))?;
     let is_inside = |value: f64| range[0] <= value && value <= range[1];
-    Ok(Stability {
+    Ok(StabilityMap {
         method: subject.entry.vocabulary.keys.method,
         configuration: subject.own.label(),
         time_unit: subject.unit("time"),
         step: subject.step,
         duration,
         left_out: extent.left_out(asked, scene),
-        parameter: Varied::of(parameter, subject),
+        parameter: VariedParameter::of(parameter, subject),
         limits: limits(&survey, &values, own),
         marks: (parameter.marks)(&subject.values).into_iter().filter(|(at, _)| is_inside(*at)).collect(),
         values,
@@ -181,20 +181,20 @@ pub(crate) fn stability(
 }
 
 /// Configurations of the scene with every integrator.
-fn schemes(subject: &Subject) -> Vec<Choice> {
-    let axes = subject.entry.axes.iter().filter(|axis| axis.decides == Decides::Order);
+fn schemes(subject: &Subject) -> Vec<SettingChoice> {
+    let axes = subject.entry.axes.iter().filter(|axis| axis.decides == ChoiceEffect::Order);
     axes.flat_map(|axis| axis.settings.iter().map(|setting| subject.own.with(&[(axis.name, setting.name)])))
         .collect()
 }
 
 /// Seconds of a step, and before the first: medians over the ends and the middle of the range.
-fn probe(runs: &Runs<'_>, parameter: &Parameter, range: [f64; 2]) -> Result<[f64; 2], StudyError> {
+fn probe(runs: &StudyRuns<'_>, parameter: &Parameter, range: [f64; 2]) -> Result<[f64; 2], StudyError> {
     let (subject, watch) = (runs.subject, runs.trial.watch);
     let of = |value: f64| -> Result<[f64; 2], RunFailure> {
         let overrides = (parameter.overrides)(&subject.values, value);
         let begun = watch.now();
         let scene = subject.prepared_at_any_step(&subject.own, subject.step, &overrides)?;
-        drop(scene.start(Purpose::Run)?);
+        drop(scene.start(StartPurpose::Run)?);
         let start = watch.now() - begun;
         Ok([runs.probe(&scene)?, start])
     };
@@ -212,14 +212,16 @@ fn probe(runs: &Runs<'_>, parameter: &Parameter, range: [f64; 2]) -> Result<[f64
 }
 
 /// Theoretical limits of the step, over the values.
-fn limits<'v>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Variant<'v>) -> Vec<Limit> {
-    let mut limits: Vec<Limit> = vec![];
+fn limits<'v>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> MapVariant<'v>) -> Vec<TheoryLimit> {
+    let mut limits: Vec<TheoryLimit> = vec![];
     for &value in values {
         for found in survey.limits(own(value)) {
             let point = (value, found.step);
             match limits.iter_mut().find(|limit| limit.name == found.name) {
                 Some(limit) => limit.points.push(point),
-                None => limits.push(Limit { name: found.name, beyond: found.beyond, points: vec![point] }),
+                None => {
+                    limits.push(TheoryLimit { name: found.name, beyond: found.beyond, points: vec![point] })
+                }
             }
         }
     }
@@ -227,10 +229,15 @@ fn limits<'v>(survey: &Survey<'_>, values: &[f64], own: impl Fn(f64) -> Variant<
 }
 
 /// Failures to list in an error, one per value.
-fn tried(values: &[f64], steps: &[f64], map: &[Vec<Cell>], parameter: &Parameter) -> Vec<(String, String)> {
+fn tried(
+    values: &[f64],
+    steps: &[f64],
+    map: &[Vec<MapPoint>],
+    parameter: &Parameter,
+) -> Vec<(String, String)> {
     let every = values.len().div_ceil(TRIED).max(1);
-    let first = |(value, cells): (&f64, &Vec<Cell>)| {
-        let Cell { class, what, .. } = cells.first()?;
+    let first = |(value, cells): (&f64, &Vec<MapPoint>)| {
+        let MapPoint { class, what, .. } = cells.first()?;
         let [value, step] = [*value, steps[0]].map(|it| significant(it, 6));
         Some((format!("{} = {value}, step {step}", parameter.name), format!("{}: {what}", class.name())))
     };

@@ -1,19 +1,21 @@
 //! Runs of a stability map.
 
-use super::averages::{self, Averages, LOOKS, Means};
-use super::boundary::{Edge, edge};
+use super::averages::{self, LOOKS, ObservedMeans, RunningMeans};
+use super::boundary::{StepBoundary, edge};
 use super::dataset::{Boundary, SchemeLimit};
-use super::outcome::{Cell, Class, Ran, Whole};
-use super::reference::{Expected, SEEDS};
+use super::outcome::{JudgedRun, MapPoint, RunClass, WholeTrial};
+use super::reference::{ExpectedMeans, SEEDS};
 use crate::results::side_by_side;
-use crate::statistics::Spread;
+use crate::statistics::RunSpread;
 use crate::study::StudyError;
 use crate::study::alarm::Alarm;
-use crate::study::choice::Choice;
-use crate::study::runs::Runs;
+use crate::study::choice::SettingChoice;
+use crate::study::runs::StudyRuns;
 use crate::study::state::delayed;
-use crate::study::trial::{Course, RunFailure};
-use stripmine_physics::method::{Beyond, Decides, Parameter, Prepared, Purpose, Simulation, StepLimit};
+use crate::study::trial::{RunFailure, RunSampling};
+use stripmine_physics::method::{
+    ChoiceEffect, LimitConsequence, Parameter, Prepared, Simulation, StartPurpose, StepLimit,
+};
 use stripmine_physics::scene::{Overrides, SEED, SceneErrors};
 
 /// Offset from a seed to the one that confirms it.
@@ -21,7 +23,7 @@ const ANOTHER: u64 = 1000;
 
 /// State of a map.
 pub(crate) struct Survey<'s> {
-    pub runs: &'s Runs<'s>,
+    pub runs: &'s StudyRuns<'s>,
     pub(crate) parameter: &'static Parameter,
     /// Steps, rising (time).
     pub steps: &'s [f64],
@@ -37,32 +39,32 @@ pub(crate) struct Survey<'s> {
 
 /// Scene of a map: its configuration, and the value of the parameter, none for the scene's own.
 #[derive(Clone, Copy)]
-pub(crate) struct Variant<'v> {
-    pub(crate) choice: &'v Choice,
+pub(crate) struct MapVariant<'v> {
+    pub(crate) choice: &'v SettingChoice,
     pub value: Option<f64>,
 }
 
 /// Expected means of a variant, or the reason why there are none.
-pub(crate) type Known = Result<Expected, String>;
+pub(crate) type ReferenceResult = Result<ExpectedMeans, String>;
 
 impl Survey<'_> {
     /// Measures the reference of a value: the most accurate configuration at the smallest step, over seeds.
-    pub(crate) fn known(&self, value: Option<f64>) -> Result<Known, StudyError> {
+    pub(crate) fn known(&self, value: Option<f64>) -> Result<ReferenceResult, StudyError> {
         let subject = self.runs.subject;
         let mut why = String::new();
         for number in 0..subject.trials.references.len() {
             let choice = subject.reference(number);
             let seeds: Vec<_> = (1..=SEEDS).collect();
-            let run = |&seed: &_| self.run(Variant { choice: &choice, value }, self.steps[0], seed);
-            let runs: Vec<Ran> = side_by_side(&seeds, run)?;
-            let whole: Result<Vec<Whole>, RunFailure> = runs.into_iter().map(|ran| ran.end).collect();
+            let run = |&seed: &_| self.run(MapVariant { choice: &choice, value }, self.steps[0], seed);
+            let runs: Vec<JudgedRun> = side_by_side(&seeds, run)?;
+            let whole: Result<Vec<WholeTrial>, RunFailure> = runs.into_iter().map(|ran| ran.end).collect();
             match whole {
                 Ok(whole) => {
-                    let (means, speeds): (Vec<Means>, Vec<f64>) =
+                    let (means, speeds): (Vec<ObservedMeans>, Vec<f64>) =
                         whole.into_iter().map(|whole| (whole.means, whole.speed)).unzip();
-                    let speed = Spread::of(&speeds).mean;
+                    let speed = RunSpread::of(&speeds).mean;
                     let at_least = |name: &str| if subject.is_velocity(name) { speed } else { 0.0 };
-                    return Ok(Expected::of(&means, at_least).ok_or_else(|| "too few runs".to_owned()));
+                    return Ok(ExpectedMeans::of(&means, at_least).ok_or_else(|| "too few runs".to_owned()));
                 }
                 Err(failure) => why = failure.why,
             }
@@ -74,29 +76,29 @@ impl Survey<'_> {
     /// them.
     pub(super) fn cell(
         &self,
-        variant: Variant<'_>,
-        known: &Known,
+        variant: MapVariant<'_>,
+        known: &ReferenceResult,
         step: f64,
         seed: u64,
-    ) -> Result<Cell, StudyError> {
+    ) -> Result<MapPoint, StudyError> {
         let expected = known.as_ref().ok();
         let cell = self.run(variant, step, seed)?.judged(expected);
-        if cell.class != Class::Silent {
+        if cell.class != RunClass::Silent {
             return Ok(cell);
         }
         let other = self.run(variant, step, seed + ANOTHER)?.judged(expected);
-        let is_chance = other.class == Class::Works;
-        Ok(if is_chance { Cell { class: Class::Works, what: String::new(), ..cell } } else { cell })
+        let is_chance = other.class == RunClass::Works;
+        Ok(if is_chance { MapPoint { class: RunClass::Works, what: String::new(), ..cell } } else { cell })
     }
 
     /// Boundaries of a variant over seeds; `guesses` are the indices of the first step that does not work, and that does not finish.
     pub(crate) fn boundary(
         &self,
-        variant: Variant<'_>,
-        known: &Known,
+        variant: MapVariant<'_>,
+        known: &ReferenceResult,
         guesses: [usize; 2],
     ) -> Result<Boundary, StudyError> {
-        let edges = |guess: usize, is_so: fn(Class) -> bool| -> Result<Vec<Edge>, StudyError> {
+        let edges = |guess: usize, is_so: fn(RunClass) -> bool| -> Result<Vec<StepBoundary>, StudyError> {
             let of = |&seed: &u64| {
                 edge(self.steps, guess, self.tolerance, |step| {
                     self.cell(variant, known, step, seed).map(|cell| is_so(cell.class))
@@ -105,25 +107,30 @@ impl Survey<'_> {
             self.seeds.iter().map(of).collect()
         };
         Ok(Boundary {
-            works: edges(guesses[0], |class| class == Class::Works)?,
-            ends: edges(guesses[1], Class::ends)?,
+            works: edges(guesses[0], |class| class == RunClass::Works)?,
+            ends: edges(guesses[1], RunClass::ends)?,
         })
     }
 
     /// Boundaries of an integrator at the scene's own value.
-    pub(super) fn scheme(&self, choice: &Choice, known: &Known) -> Result<SchemeLimit, StudyError> {
-        let variant = Variant { choice, value: None };
+    pub(super) fn scheme(
+        &self,
+        choice: &SettingChoice,
+        known: &ReferenceResult,
+    ) -> Result<SchemeLimit, StudyError> {
+        let variant = MapVariant { choice, value: None };
         let edges = self.boundary(variant, known, [self.steps.len() / 2; 2])?;
         let first = match (edges.works.first(), self.seeds.first()) {
-            (Some(Edge::Between([_, fails])), Some(&seed)) => {
+            (Some(StepBoundary::Between([_, fails])), Some(&seed)) => {
                 Some(self.cell(variant, known, *fails, seed)?.class)
             }
             _ => None,
         };
-        let unstable = self.limits(variant).into_iter().filter(|limit| limit.beyond == Beyond::Unstable);
+        let unstable =
+            self.limits(variant).into_iter().filter(|limit| limit.beyond == LimitConsequence::Unstable);
         let least = unstable.min_by(|a, b| a.step.total_cmp(&b.step));
         Ok(SchemeLimit {
-            scheme: choice.names(Decides::Order).join(" "),
+            scheme: choice.names(ChoiceEffect::Order).join(" "),
             edges,
             first,
             theory: least.map(|limit| (limit.step, limit.name)),
@@ -131,13 +138,13 @@ impl Survey<'_> {
     }
 
     /// Theoretical limits of the step of a variant.
-    pub(crate) fn limits(&self, variant: Variant<'_>) -> Vec<StepLimit> {
+    pub(crate) fn limits(&self, variant: MapVariant<'_>) -> Vec<StepLimit> {
         let scene = self.prepared(variant, self.runs.subject.step, 1);
         scene.map_or(vec![], |scene| scene.step_limits)
     }
 
     /// Prepares the scene of a variant, even where theory forbids the step.
-    fn prepared(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Prepared, SceneErrors> {
+    fn prepared(&self, variant: MapVariant<'_>, step: f64, seed: u64) -> Result<Prepared, SceneErrors> {
         let subject = self.runs.subject;
         let varied = |value| (self.parameter.overrides)(&subject.values, value);
         let overrides = variant.value.map_or_else(Overrides::new, varied);
@@ -150,24 +157,26 @@ impl Survey<'_> {
         Ok(delayed(&scene, phase * step))
     }
 
-    fn run(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Ran, StudyError> {
+    fn run(&self, variant: MapVariant<'_>, step: f64, seed: u64) -> Result<JudgedRun, StudyError> {
         let value = variant.value.map_or("own".to_owned(), |value| format!("{value:?}"));
         let key = format!("run|{}|{value}|{step:?}|{seed}", variant.choice.label());
-        let fits = |ran: &Ran| {
-            let is_ours =
-                |whole: &Whole| averages::are_of(self.runs.subject, &whole.means) && whole.speed.is_finite();
+        let fits = |ran: &JudgedRun| {
+            let is_ours = |whole: &WholeTrial| {
+                averages::are_of(self.runs.subject, &whole.means) && whole.speed.is_finite()
+            };
             ran.end.as_ref().map_or(true, is_ours)
         };
         let ran = self.runs.recall(&key, fits, || self.ran(variant, step, seed))?;
-        Ok(ran.unwrap_or_else(|refused| Ran { foreseen: vec![], end: Err(refused) }))
+        Ok(ran.unwrap_or_else(|refused| JudgedRun { foreseen: vec![], end: Err(refused) }))
     }
 
-    fn ran(&self, variant: Variant<'_>, step: f64, seed: u64) -> Result<Ran, RunFailure> {
+    fn ran(&self, variant: MapVariant<'_>, step: f64, seed: u64) -> Result<JudgedRun, RunFailure> {
         let subject = self.runs.subject;
         let scene = self.prepared(variant, step, seed)?;
         let foreseen = Alarm::before(&scene);
-        let course = Course { steps: (self.duration / step).round() as u64, looks: LOOKS, each: self.each };
-        let mut averages = Averages::new(subject, scene.domain);
+        let course =
+            RunSampling { steps: (self.duration / step).round() as u64, looks: LOOKS, each: self.each };
+        let mut averages = RunningMeans::new(subject, scene.domain);
         let (mut energy, mut scale) = (None, 0.0);
         let look = |simulation: &dyn Simulation| {
             let values = simulation.observe();
@@ -177,16 +186,16 @@ impl Survey<'_> {
                 energy = Some(balance.error(&values));
             }
         };
-        let end = match self.runs.follow(&scene, Purpose::Run, course, look) {
+        let end = match self.runs.follow(&scene, StartPurpose::Run, course, look) {
             Err(failure) if failure.is_interruption() => return Err(failure),
             Err(failure) => Err(failure),
-            Ok(end) => Ok(Whole {
+            Ok(end) => Ok(WholeTrial {
                 energy: energy.filter(|_| scale > 0.0).map(|error| error / scale),
                 speed: averages.speed,
                 means: averages.means,
                 warned: end.warnings().iter().map(Alarm::of_run).collect(),
             }),
         };
-        Ok(Ran { foreseen, end })
+        Ok(JudgedRun { foreseen, end })
     }
 }

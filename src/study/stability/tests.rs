@@ -1,14 +1,14 @@
 //! Stability maps on a synthetic clock: no extent depends on the speed of the machine.
 
-use super::{Effort, Over, made, stability};
-use crate::results::{Identity, Journal};
-use crate::study::trial::{Stopwatch, Trial};
+use super::{MapEffort, VariedRange, made, stability};
+use crate::results::{Journal, JournalIdentity};
+use crate::study::trial::{Stopwatch, TrialControl};
 use crate::study::{StudyError, Subject};
 use serde_json::Value;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_physics::method::METHODS;
 
-const EFFORT: Effort = Effort { budget: 600.0, size: 4, seeds: 1, tolerance: 0.2 };
+const EFFORT: MapEffort = MapEffort { budget: 600.0, size: 4, seeds: 1, tolerance: 0.2 };
 
 fn subject(scene: &str, sets: &[&str]) -> Subject {
     let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
@@ -24,8 +24,8 @@ fn mapped(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Value, StudyError> {
     let watch = Stopwatch::made(nanoseconds);
-    let over = Over::of(subject, None, None)?;
-    let trial = Trial { watch: &watch, stop };
+    let over = VariedRange::of(subject, None, None)?;
+    let trial = TrialControl { watch: &watch, stop };
     let map = stability(subject, over, &EFFORT, trial, journal, progress)?;
     Ok(made(&[("scene".to_owned(), map)]).json())
 }
@@ -48,7 +48,7 @@ fn map_without_enough_time_is_refused() {
 #[test]
 fn an_interrupted_map_resumes() {
     let folder = tempfile::tempdir().unwrap();
-    let identity = Identity { of: "two discs".to_owned(), digest: "12345678".to_owned() };
+    let identity = JournalIdentity { of: "two discs".to_owned(), digest: "12345678".to_owned() };
     let subject = subject("two-discs", &["run.time=0.4"]);
     let run = |until: f64| {
         let stop = AtomicBool::new(false);

@@ -2,13 +2,13 @@
 
 use crate::study::first_line;
 use serde::{Deserialize, Serialize};
-use stripmine_physics::method::{Failure, FailureKind};
+use stripmine_physics::method::{FailureKind, PhysicsFailure};
 use stripmine_physics::scene::SceneErrors;
 
 /// Cause of a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Cause {
+pub(crate) enum FailureCause {
     Penetration,
     /// A particle moves so far in a step that contacts are missed.
     MaskOutrun,
@@ -24,17 +24,17 @@ pub(crate) enum Cause {
     Interrupted,
 }
 
-impl Cause {
+impl FailureCause {
     pub(crate) const fn name(self) -> &'static str {
         match self {
-            Cause::Penetration => "penetration",
-            Cause::MaskOutrun => "mask outrun",
-            Cause::SharedCell => "two in a cell",
-            Cause::ParticleLost => "particle lost",
-            Cause::NonFinite => "non-finite",
-            Cause::Other => "stopped otherwise",
-            Cause::Refused => "no such scene",
-            Cause::Interrupted => "interrupted",
+            FailureCause::Penetration => "penetration",
+            FailureCause::MaskOutrun => "mask outrun",
+            FailureCause::SharedCell => "two in a cell",
+            FailureCause::ParticleLost => "particle lost",
+            FailureCause::NonFinite => "non-finite",
+            FailureCause::Other => "stopped otherwise",
+            FailureCause::Refused => "no such scene",
+            FailureCause::Interrupted => "interrupted",
         }
     }
 }
@@ -42,31 +42,31 @@ impl Cause {
 /// Failure of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RunFailure {
-    pub(crate) cause: Cause,
+    pub(crate) cause: FailureCause,
     /// One line, without advice.
     pub(crate) why: String,
 }
 
 impl RunFailure {
     pub(super) fn interrupted() -> RunFailure {
-        RunFailure { cause: Cause::Interrupted, why: String::new() }
+        RunFailure { cause: FailureCause::Interrupted, why: String::new() }
     }
 
     /// True if the user interrupted the run.
     pub(crate) fn is_interruption(&self) -> bool {
-        self.cause == Cause::Interrupted
+        self.cause == FailureCause::Interrupted
     }
 }
 
-impl From<Failure> for RunFailure {
-    fn from(failure: Failure) -> RunFailure {
+impl From<PhysicsFailure> for RunFailure {
+    fn from(failure: PhysicsFailure) -> RunFailure {
         let cause = match failure.kind {
-            FailureKind::NOT_FINITE | FailureKind::OVERFLOW => Cause::NonFinite,
-            FailureKind::OUT_OF_BOX => Cause::ParticleLost,
-            FailureKind::CONFLICT => Cause::SharedCell,
-            FailureKind::TOO_DEEP => Cause::Penetration,
-            FailureKind::LONG_STEP => Cause::MaskOutrun,
-            _ => Cause::Other,
+            FailureKind::NOT_FINITE | FailureKind::OVERFLOW => FailureCause::NonFinite,
+            FailureKind::OUT_OF_BOX => FailureCause::ParticleLost,
+            FailureKind::CONFLICT => FailureCause::SharedCell,
+            FailureKind::TOO_DEEP => FailureCause::Penetration,
+            FailureKind::LONG_STEP => FailureCause::MaskOutrun,
+            _ => FailureCause::Other,
         };
         RunFailure { cause, why: first_line(&failure.what()) }
     }
@@ -75,6 +75,6 @@ impl From<Failure> for RunFailure {
 impl From<SceneErrors> for RunFailure {
     fn from(errors: SceneErrors) -> RunFailure {
         let messages: Vec<String> = errors.0.iter().map(|error| first_line(&error.message)).collect();
-        RunFailure { cause: Cause::Refused, why: messages.join("; ") }
+        RunFailure { cause: FailureCause::Refused, why: messages.join("; ") }
     }
 }

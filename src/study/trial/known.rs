@@ -15,7 +15,7 @@ const WORTH: f64 = 0.8;
 
 /// Estimated mean of a run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(crate) struct Known {
+pub(crate) struct MeanEstimate {
     #[serde(with = "any_number")]
     pub mean: f64,
     /// Half the width of its 95 % confidence interval (the error bar).
@@ -49,17 +49,17 @@ pub(crate) struct Known {
 
 /// Costs of a run whose rows are instantaneous values, so that values between rows are lost.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pace {
+pub(crate) struct RowPace {
     /// Wall seconds of a unit of time, without rows.
     pub(crate) cost: f64,
     /// Wall seconds of a row.
     pub row: f64,
 }
 
-impl Known {
+impl MeanEstimate {
     /// A mean without statistical error.
-    pub(crate) fn exactly(mean: f64) -> Known {
-        Known {
+    pub(crate) fn exactly(mean: f64) -> MeanEstimate {
+        MeanEstimate {
             mean,
             bar: 0.0,
             square: 0.0,
@@ -74,19 +74,26 @@ impl Known {
     }
 
     /// Estimates the mean from the means of whole runs of a time (time); none from fewer than two.
-    pub(crate) fn of_whole_runs(means: &[f64], time: f64) -> Option<Known> {
+    pub(crate) fn of_whole_runs(means: &[f64], time: f64) -> Option<MeanEstimate> {
         let count = means.len() as f64;
         let [mean, bar] = of_independent(means)?;
         let (span, waves) = (count * time, count - 1.0);
-        Some(Known { bar, square: bar * bar * span, span, waves, freedoms: waves, ..Known::exactly(mean) })
+        Some(MeanEstimate {
+            bar,
+            square: bar * bar * span,
+            span,
+            waves,
+            freedoms: waves,
+            ..MeanEstimate::exactly(mean)
+        })
     }
 
     /// Estimates the mean from an average and its values, each with its time (time). With a pace, the spacing of rows is optimised.
-    pub(crate) fn of(it: Estimate, values: &[[f64; 2]], pace: Option<Pace>) -> Known {
+    pub(crate) fn of(it: Estimate, values: &[[f64; 2]], pace: Option<RowPace>) -> MeanEstimate {
         let kept: Vec<f64> =
             values.iter().filter(|[time, _]| *time > it.equilibrated_at).map(|[_, value]| *value).collect();
         let [bar, freedoms] = foreseeing(&kept).unwrap_or([it.bar, it.freedoms]);
-        let all = Known {
+        let all = MeanEstimate {
             mean: it.mean,
             bar: it.bar,
             square: bar * bar * it.span,
@@ -102,11 +109,11 @@ impl Known {
     }
 
     /// Optimises the spacing of rows for the cost of an error; none if there are too few values.
-    fn by_rows(self, values: &[f64], pace: Pace) -> Option<Known> {
+    fn by_rows(self, values: &[f64], pace: RowPace) -> Option<MeanEstimate> {
         let count = values.len() as f64;
         let spacing = self.span / count;
         let squares: f64 = values.iter().map(|value| (value - self.mean).powi(2)).sum();
-        let mut best: Option<(f64, Known)> = None;
+        let mut best: Option<(f64, MeanEstimate)> = None;
         for by in EVERY {
             let seen: Vec<f64> = values.iter().skip(by - 1).step_by(by).copied().collect();
             let Some([bar, freedoms]) = foreseeing(&seen).filter(|_| by == 1 || seen.len() >= FEWEST) else {
@@ -116,7 +123,10 @@ impl Known {
             let square = bar * bar * every * seen.len() as f64;
             let cost = square * (pace.cost + pace.row / every);
             if best.is_none_or(|(least, _)| cost < WORTH * least) {
-                best = Some((cost, Known { square, every, single: 4.0 * squares / count, freedoms, ..self }));
+                best = Some((
+                    cost,
+                    MeanEstimate { square, every, single: 4.0 * squares / count, freedoms, ..self },
+                ));
             }
         }
         best.map(|(_, known)| known)
@@ -127,7 +137,7 @@ impl Known {
     /// The variance of a mean over rows Δ apart is that of values with exponentially decaying correlation, v Δ coth(v Δ/s). Here v is the variance of
     /// a single value and s that of close rows in a unit of time: the limits are s for close rows, and v Δ for independent rows.
     #[must_use]
-    pub(crate) fn looked_at(&self, every: f64) -> Known {
+    pub(crate) fn looked_at(&self, every: f64) -> MeanEstimate {
         if self.single == 0.0 || every <= self.every {
             return *self;
         }
@@ -140,7 +150,7 @@ impl Known {
                 alone(every) / libm::tanh(alone(every) / close)
             }
         };
-        Known { square, every, ..*self }
+        MeanEstimate { square, every, ..*self }
     }
 
     /// Number of rows of a run of some time.
@@ -157,12 +167,12 @@ impl Known {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_physics::averages::{Outcome, estimated};
+    use stripmine_physics::averages::{AverageOutcome, estimated};
 
-    const FREE: Pace = Pace { cost: 1.0, row: 0.0 };
+    const FREE: RowPace = RowPace { cost: 1.0, row: 0.0 };
 
     /// Values a unit of time apart, correlated with the one before.
-    fn known(memory: f64, pace: Option<Pace>) -> Known {
+    fn known(memory: f64, pace: Option<RowPace>) -> MeanEstimate {
         let (mut state, mut value) = (5_u64, 0.0);
         let mut next = |end: u32| {
             let mut uniform = || {
@@ -175,7 +185,7 @@ mod tests {
         let series: Vec<[f64; 2]> = (1..=8000).map(&mut next).collect();
         let values: Vec<f64> = series.iter().map(|it| it[1]).collect();
         match estimated(&values, 0.0, 1.0) {
-            Outcome::Mean(estimate) => Known::of(estimate, &series, pace),
+            AverageOutcome::Mean(estimate) => MeanEstimate::of(estimate, &series, pace),
             outcome => unreachable!("{outcome:?}"),
         }
     }
@@ -193,7 +203,7 @@ mod tests {
         );
         let quick = known(0.0, Some(FREE));
         assert!(quick.every == 1.0 && near(quick.square, 4.0) && near(quick.single, 4.0), "{quick:?}");
-        let dear = known(0.0, Some(Pace { row: 80.0, ..FREE }));
+        let dear = known(0.0, Some(RowPace { row: 80.0, ..FREE }));
         assert!(dear.every == 8.0 && near(dear.square, 32.0), "{dear:?}");
         // Rows that lose nothing may have any spacing.
         let means = known(0.0, None);

@@ -7,15 +7,15 @@ mod pairs;
 mod sample;
 mod stopwatch;
 
-pub(crate) use failure::{Cause, RunFailure};
-pub(crate) use known::{Known, Pace, ROWS};
-pub(crate) use pairs::{Compared, Paired, TOGETHER, Window, pairs, part, steady};
-pub(crate) use sample::{Sample, Span, values};
+pub(crate) use failure::{FailureCause, RunFailure};
+pub(crate) use known::{MeanEstimate, ROWS, RowPace};
+pub(crate) use pairs::{PairedConfigurations, PairedMeans, TOGETHER, Window, pairs, part, steady};
+pub(crate) use sample::{SampleSpan, TrialSample, values};
 pub(crate) use stopwatch::Stopwatch;
 
-use crate::results::Meter;
+use crate::results::ProgressMeter;
 use std::sync::atomic::{AtomicBool, Ordering};
-use stripmine_physics::method::{Prepared, Purpose, Simulation, Until};
+use stripmine_physics::method::{Prepared, Simulation, StartPurpose, Until};
 
 /// Shortest timing of a step (s).
 const PROBE: f64 = 2e-3;
@@ -24,7 +24,7 @@ const TOGETHER_AT_LEAST: f64 = 1e-3;
 
 /// Clock of trials, and the flag that interrupts them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Trial<'t> {
+pub(crate) struct TrialControl<'t> {
     pub watch: &'t Stopwatch,
     /// Set when the user interrupts.
     pub stop: &'t AtomicBool,
@@ -32,7 +32,7 @@ pub(crate) struct Trial<'t> {
 
 /// Length of a run, and its samples.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Course {
+pub(crate) struct RunSampling {
     pub steps: u64,
     /// Number of samples, evenly spaced, the last one at the end.
     pub looks: u64,
@@ -40,7 +40,7 @@ pub(crate) struct Course {
     pub(crate) each: f64,
 }
 
-impl Trial<'_> {
+impl TrialControl<'_> {
     /// Runs a scene and returns its final state. `look` is called at every sample, and before the first step.
     ///
     /// # Errors
@@ -48,9 +48,9 @@ impl Trial<'_> {
     pub(crate) fn follow(
         &self,
         prepared: &Prepared,
-        purpose: Purpose,
-        course: Course,
-        meter: &Meter<'_>,
+        purpose: StartPurpose,
+        course: RunSampling,
+        meter: &ProgressMeter<'_>,
         mut look: impl FnMut(&dyn Simulation),
     ) -> Result<Box<dyn Simulation>, RunFailure> {
         let mut simulation = prepared.start(purpose)?;
@@ -83,7 +83,7 @@ impl Trial<'_> {
     /// # Errors
     /// [`RunFailure`] if it fails, or the user interrupts it.
     pub(crate) fn seconds_of_a_step(&self, prepared: &Prepared, most: u64) -> Result<f64, RunFailure> {
-        let mut simulation = prepared.start(Purpose::Measurement)?;
+        let mut simulation = prepared.start(StartPurpose::Measurement)?;
         let begun = self.watch.now();
         let mut steps = 1;
         loop {
@@ -103,7 +103,7 @@ impl Trial<'_> {
     pub(crate) fn seconds_of_a_run(&self, prepared: &Prepared, steps: u64) -> Result<f64, RunFailure> {
         let (mut spent, mut runs) = (0.0, 0);
         while spent < TOGETHER_AT_LEAST {
-            let mut simulation = prepared.start(Purpose::Measurement)?;
+            let mut simulation = prepared.start(StartPurpose::Measurement)?;
             let begun = self.watch.now();
             self.advance_to_step(simulation.as_mut(), steps)?;
             spent += self.watch.now() - begun;

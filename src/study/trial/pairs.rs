@@ -5,11 +5,13 @@
 //! the bias b of the steady state builds up: d(t) = b (1 − exp(−t/τ)) + a exp(−t/τ). The mean over the second half of a window w is
 //! b g + a (1 − g) with g = 1 − (2τ/w)(exp(−w/2τ) − exp(−w/τ)), so two windows determine both a and b.
 
-use super::Trial;
+use super::TrialControl;
 use crate::study::first_line;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use std::sync::atomic::Ordering;
-use stripmine_physics::method::{Failure, Kind, Quantity, RunWarning, Simulation, Until};
+use stripmine_physics::method::{
+    ObservedQuantity, PhysicsFailure, QuantityKind, RunWarning, Simulation, Until,
+};
 
 /// Fewest windows: two determine a bias.
 const FEWEST: usize = 2;
@@ -21,7 +23,7 @@ const ALL: f64 = 1e-3;
 pub(crate) const TOGETHER: f64 = 0.2;
 
 /// Configurations to compare, the reference first, and the states that each starts from.
-pub(crate) struct Compared<'c> {
+pub(crate) struct PairedConfigurations<'c> {
     /// Steps between two rows, for each configuration.
     pub steps: &'c [u64],
     /// Rows of the first half of the first window. Each next window is twice as long.
@@ -45,7 +47,7 @@ pub(crate) struct Window {
 
 /// Means over windows from the same states.
 #[derive(Clone, Debug)]
-pub(crate) struct Paired {
+pub(crate) struct PairedMeans {
     /// Number of states.
     pub starts: usize,
     /// Windows, each twice as long as the one before.
@@ -56,14 +58,14 @@ pub(crate) struct Paired {
 
 /// Failure of a configuration.
 #[derive(Debug)]
-pub(crate) struct Broken {
+pub(crate) struct FailedConfiguration {
     /// Index among the compared configurations.
     pub at: usize,
     pub(crate) why: String,
 }
 
 /// A run with the state of its average at the end and in the middle of a window.
-struct Course {
+struct PairedRun {
     simulation: Box<dyn Simulation>,
     rows: u64,
     /// The time, and the sum of all rows, or the last value of a quantity that grows.
@@ -71,14 +73,14 @@ struct Course {
     middle: [f64; 2],
 }
 
-impl Course {
+impl PairedRun {
     /// Advances to a row, which ends a window; the end of the previous window becomes its middle.
     fn advance(
         &mut self,
-        (trial, is_over): (&Trial<'_>, &(dyn Fn() -> bool + Sync)),
+        (trial, is_over): (&TrialControl<'_>, &(dyn Fn() -> bool + Sync)),
         (steps, rows): (u64, u64),
-        (quantity, place): (Quantity, usize),
-    ) -> Result<(), Failure> {
+        (quantity, place): (ObservedQuantity, usize),
+    ) -> Result<(), PhysicsFailure> {
         self.middle = self.end;
         while self.rows < rows && !is_over() {
             self.rows += 1;
@@ -92,7 +94,7 @@ impl Course {
     }
 
     /// Mean over the second half of the window.
-    fn mean(&self, kind: Kind) -> f64 {
+    fn mean(&self, kind: QuantityKind) -> f64 {
         let [time, sum] = [0, 1].map(|at| self.end[at] - self.middle[at]);
         if kind.grows() { sum / time } else { sum / (self.rows / 2) as f64 }
     }
@@ -104,30 +106,36 @@ impl Course {
 /// # Errors
 /// [`Broken`] names the configuration that failed.
 pub(crate) fn pairs(
-    trial: &Trial<'_>,
-    compared: &Compared<'_>,
-    (quantities, place): (&'static [Quantity], usize),
+    trial: &TrialControl<'_>,
+    compared: &PairedConfigurations<'_>,
+    (quantities, place): (&'static [ObservedQuantity], usize),
     seconds: f64,
-) -> Result<Paired, Broken> {
+) -> Result<PairedMeans, FailedConfiguration> {
     let begun = trial.watch.now();
     let quantity = (quantities[place], place);
     let begin = |at: usize, start: usize| {
-        let mut simulation = (compared.begin)(at, start).map_err(|why| Broken { at, why })?;
+        let mut simulation = (compared.begin)(at, start).map_err(|why| FailedConfiguration { at, why })?;
         let value = simulation.row()[place];
         let begun = [0.0, if quantity.0.kind.grows() { value } else { 0.0 }];
-        Ok(Course { simulation, rows: 0, end: begun, middle: begun })
+        Ok(PairedRun { simulation, rows: 0, end: begun, middle: begun })
     };
-    let mut courses: Vec<Vec<Course>> = (0..compared.steps.len())
-        .map(|at| (0..compared.starts).map(|start| begin(at, start)).collect::<Result<Vec<_>, Broken>>())
-        .collect::<Result<_, Broken>>()?;
+    let mut courses: Vec<Vec<PairedRun>> = (0..compared.steps.len())
+        .map(|at| {
+            (0..compared.starts)
+                .map(|start| begin(at, start))
+                .collect::<Result<Vec<_>, FailedConfiguration>>()
+        })
+        .collect::<Result<_, FailedConfiguration>>()?;
     let is_over = || trial.stop.load(Ordering::Relaxed) || trial.watch.now() - begun > LATE * seconds;
     let mut advance = |rows: u64| {
         courses.par_iter_mut().enumerate().try_for_each(|(at, runs)| {
-            let run = |run: &mut Course| run.advance((trial, &is_over), (compared.steps[at], rows), quantity);
-            let broken = |failure: Failure| Broken { at, why: first_line(&failure.what()) };
+            let run =
+                |run: &mut PairedRun| run.advance((trial, &is_over), (compared.steps[at], rows), quantity);
+            let broken =
+                |failure: PhysicsFailure| FailedConfiguration { at, why: first_line(&failure.what()) };
             runs.par_iter_mut().try_for_each(run).map_err(broken)
         })?;
-        let means = |runs: &Vec<Course>| runs.iter().map(|run| run.mean(quantity.0.kind)).collect();
+        let means = |runs: &Vec<PairedRun>| runs.iter().map(|run| run.mean(quantity.0.kind)).collect();
         let means: Vec<Vec<f64>> = courses.iter().map(means).collect();
         Ok(Window::of(courses[0].first().map_or(0.0, |run| run.end[0]), &means))
     };
@@ -142,7 +150,7 @@ pub(crate) fn pairs(
         }
         windows.push(window);
     }
-    let warned = |runs: &Vec<Course>| {
+    let warned = |runs: &Vec<PairedRun>| {
         let mut all: Vec<RunWarning> = vec![];
         for warning in runs.iter().flat_map(|run| run.simulation.warnings()) {
             if all.iter().all(|it| it.check != warning.check) {
@@ -151,7 +159,7 @@ pub(crate) fn pairs(
         }
         all
     };
-    Ok(Paired { starts: compared.starts, windows, warnings: courses.iter().map(warned).collect() })
+    Ok(PairedMeans { starts: compared.starts, windows, warnings: courses.iter().map(warned).collect() })
 }
 
 fn variance(values: &[f64]) -> f64 {

@@ -1,11 +1,12 @@
 //! A trial run of some seconds: the cost of a unit of time, and an estimate of a mean.
 
-use super::Trial;
-use super::known::{Known, Pace, ROWS};
+use super::TrialControl;
+use super::known::{MeanEstimate, ROWS, RowPace};
 use std::sync::atomic::Ordering;
-use stripmine_physics::averages::{Average, Outcome, Rows};
+use stripmine_physics::averages::{Average, AverageOutcome, AveragedRows};
 use stripmine_physics::method::{
-    Clock, Every, Failure, Kind, Prepared, Purpose, Quantity, RunWarning, Simulation, Until,
+    Clock, Every, ObservedQuantity, PhysicsFailure, Prepared, QuantityKind, RunWarning, Simulation,
+    StartPurpose, Until,
 };
 use stripmine_physics::number::significant;
 use stripmine_physics::particles::Particles;
@@ -29,7 +30,7 @@ const KEPT: usize = 2_000_000;
 
 /// A trial run of some seconds.
 #[derive(Clone, Debug)]
-pub(crate) struct Sample {
+pub(crate) struct TrialSample {
     /// Wall seconds of a unit of time, without rows.
     pub(crate) cost: f64,
     /// Wall seconds of a row.
@@ -41,7 +42,7 @@ pub(crate) struct Sample {
     /// Time reached (time).
     pub time: f64,
     /// Mean of the quantity, or the reason why there is none.
-    pub outcome: Outcome,
+    pub outcome: AverageOutcome,
     /// Set if it went beyond the end of the scene's own run.
     pub(crate) comes_beyond_end: bool,
     pub warnings: Vec<RunWarning>,
@@ -54,32 +55,32 @@ pub(crate) struct Sample {
     /// Rows with all quantities, the time first.
     pub rows: Vec<Vec<f64>>,
     /// Kind of the quantity, and its index in a row.
-    pub observed: (Kind, usize),
+    pub observed: (QuantityKind, usize),
     /// Set where values between rows are lost, so that closer rows give more information: instantaneous values, unless a periodic drive repeats them.
     pub(crate) loses: bool,
 }
 
-impl Sample {
+impl TrialSample {
     /// Estimated mean, if there is one, however rough.
-    pub(crate) fn known(&self) -> Option<Known> {
+    pub(crate) fn known(&self) -> Option<MeanEstimate> {
         match self.outcome {
-            Outcome::Mean(estimate) | Outcome::TooShort { estimate: Some(estimate), .. } => {
+            AverageOutcome::Mean(estimate) | AverageOutcome::TooShort { estimate: Some(estimate), .. } => {
                 let values = values(&self.rows, self.observed.1, &self.series, self.loses);
-                Some(Known::of(estimate, &values, self.pace()))
+                Some(MeanEstimate::of(estimate, &values, self.pace()))
             }
-            Outcome::Constant { mean } => Some(Known::exactly(mean)),
-            Outcome::TooShort { estimate: None, .. }
-            | Outcome::Undefined
-            | Outcome::Changing { .. }
-            | Outcome::Kept { .. } => None,
+            AverageOutcome::Constant { mean } => Some(MeanEstimate::exactly(mean)),
+            AverageOutcome::TooShort { estimate: None, .. }
+            | AverageOutcome::Undefined
+            | AverageOutcome::Changing { .. }
+            | AverageOutcome::Kept { .. } => None,
         }
     }
 }
 
-impl Sample {
+impl TrialSample {
     /// Costs of time and rows, where values between rows are lost.
-    pub(crate) fn pace(&self) -> Option<Pace> {
-        self.loses.then_some(Pace { cost: self.cost, row: self.row })
+    pub(crate) fn pace(&self) -> Option<RowPace> {
+        self.loses.then_some(RowPace { cost: self.cost, row: self.row })
     }
 
     /// Warnings of its checks, joined.
@@ -104,12 +105,12 @@ impl Sample {
     pub(crate) fn without_mean(&self) -> String {
         let time = significant(self.time, 3);
         match self.outcome {
-            Outcome::Changing { first, last } => format!(
+            AverageOutcome::Changing { first, last } => format!(
                 "still changing up to a time of {time}, from {} to {}",
                 significant(first, 3),
                 significant(last, 3)
             ),
-            Outcome::TooShort { enough_at, .. } => {
+            AverageOutcome::TooShort { enough_at, .. } => {
                 format!("a time of {time} is too short, {} would be enough", significant(enough_at, 2))
             }
             _ => format!("no mean up to a time of {time}"),
@@ -130,7 +131,7 @@ impl Sample {
             let (gone, part) = (times[1] - times[0], end - begin);
             let sum = match kind {
                 _ if kind.grows() => (values[1] - values[0]) * part / gone,
-                Kind::Instant => {
+                QuantityKind::Instant => {
                     let slope = (values[1] - values[0]) / gone;
                     (values[0] + slope * (0.5 * (begin + end) - times[0])) * part
                 }
@@ -154,7 +155,7 @@ pub(crate) fn values(rows: &[Vec<f64>], place: usize, series: &[[f64; 2]], loses
 
 /// Length of a sample.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Span {
+pub(crate) enum SampleSpan {
     /// About so many wall seconds.
     Seconds(f64),
     /// A time (time), but at most so many wall seconds where these are given.
@@ -163,21 +164,23 @@ pub(crate) enum Span {
     Planned(f64, Option<f64>),
 }
 
-impl Span {
+impl SampleSpan {
     /// Limits the span to some wall seconds.
     #[must_use]
-    pub(crate) fn within(self, left: f64) -> Span {
+    pub(crate) fn within(self, left: f64) -> SampleSpan {
         match self {
-            Span::Seconds(seconds) => Span::Seconds(seconds.min(left)),
-            Span::Time(time, seconds) => Span::Time(time, Some(seconds.map_or(left, |it| it.min(left)))),
-            Span::Planned(time, seconds) => {
-                Span::Planned(time, Some(seconds.map_or(left, |it| it.min(left))))
+            SampleSpan::Seconds(seconds) => SampleSpan::Seconds(seconds.min(left)),
+            SampleSpan::Time(time, seconds) => {
+                SampleSpan::Time(time, Some(seconds.map_or(left, |it| it.min(left))))
+            }
+            SampleSpan::Planned(time, seconds) => {
+                SampleSpan::Planned(time, Some(seconds.map_or(left, |it| it.min(left))))
             }
         }
     }
 }
 
-impl Trial<'_> {
+impl TrialControl<'_> {
     /// Runs a scene and observes a quantity.
     ///
     /// # Errors
@@ -185,33 +188,33 @@ impl Trial<'_> {
     pub(crate) fn sample(
         &self,
         prepared: &Prepared,
-        (quantities, place): (&'static [Quantity], usize),
-        span: Span,
-    ) -> Result<Sample, Failure> {
+        (quantities, place): (&'static [ObservedQuantity], usize),
+        span: SampleSpan,
+    ) -> Result<TrialSample, PhysicsFailure> {
         let begun = self.watch.now();
-        let mut simulation = prepared.start(Purpose::Run)?;
+        let mut simulation = prepared.start(StartPurpose::Run)?;
         let simulation = simulation.as_mut();
         let start = self.watch.now() - begun;
-        let mut rows = Rows::new(quantities);
+        let mut rows = AveragedRows::new(quantities);
         let mut all_rows = vec![simulation.row()];
         rows.add(&all_rows[0]);
         let (seconds, most) = match span {
-            Span::Seconds(seconds) => (Some(seconds), f64::INFINITY),
-            Span::Time(time, seconds) | Span::Planned(time, seconds) => (seconds, time),
+            SampleSpan::Seconds(seconds) => (Some(seconds), f64::INFINITY),
+            SampleSpan::Time(time, seconds) | SampleSpan::Planned(time, seconds) => (seconds, time),
         };
-        let own = own_rows(prepared).filter(|_| matches!(span, Span::Planned(..)));
-        let loses = quantities[place].kind == Kind::Instant && prepared.model.period().is_none();
+        let own = own_rows(prepared).filter(|_| matches!(span, SampleSpan::Planned(..)));
+        let loses = quantities[place].kind == QuantityKind::Instant && prepared.model.period().is_none();
         let mut of_stretch = None;
         let stride = match (span, own) {
-            (Span::Seconds(seconds), _) => {
+            (SampleSpan::Seconds(seconds), _) => {
                 let most = if loses { MOST_ROWS } else { FEWEST_ROWS };
                 of_stretch = loses.then_some(OF_FAR * seconds);
                 self.stride(simulation, prepared, [most, FEWEST_ROWS].map(|rows| seconds / rows))?
             }
             (_, Some(own)) => own,
-            (Span::Time(time, _) | Span::Planned(time, _), None) => {
+            (SampleSpan::Time(time, _) | SampleSpan::Planned(time, _), None) => {
                 // The deviation of a quantity is only seen at samples.
-                let rows = if quantities[place].kind == Kind::Kept { LOOKS } else { ROWS };
+                let rows = if quantities[place].kind == QuantityKind::Kept { LOOKS } else { ROWS };
                 self.advance(simulation, first(prepared))?;
                 let Clock { steps, time: gone, .. } = simulation.clock();
                 match prepared.schedule.until {
@@ -226,7 +229,7 @@ impl Trial<'_> {
         let running = self.watch.now();
         // The start is included in the time.
         let limit = seconds.map_or(f64::INFINITY, |all| all - (running - begun) - of_stretch.unwrap_or(0.0));
-        let mut states = States::new(prepared);
+        let mut states = StateSamples::new(prepared);
         // Time and cost of the stretches after warm-up, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
         while self.watch.now() - running < limit
@@ -260,7 +263,7 @@ impl Trial<'_> {
             Some(of_stretch) => self.costs(simulation, stride, (near, of_stretch))?,
             None => [near, self.timed_row(simulation)],
         };
-        Ok(Sample {
+        Ok(TrialSample {
             cost,
             row,
             start,
@@ -279,13 +282,13 @@ impl Trial<'_> {
     }
 
     /// Advances by one stretch.
-    fn advance(&self, simulation: &mut dyn Simulation, stretch: Until) -> Result<(), Failure> {
+    fn advance(&self, simulation: &mut dyn Simulation, stretch: Until) -> Result<(), PhysicsFailure> {
         let end = stretch.after(&simulation.clock());
         self.advance_to(simulation, &[end])
     }
 
     /// Advances to the first of some moments.
-    fn advance_to(&self, simulation: &mut dyn Simulation, moments: &[Until]) -> Result<(), Failure> {
+    fn advance_to(&self, simulation: &mut dyn Simulation, moments: &[Until]) -> Result<(), PhysicsFailure> {
         self.watch.during(simulation, |it| it.advance(moments, self.stop))
     }
 
@@ -296,7 +299,7 @@ impl Trial<'_> {
         simulation: &mut dyn Simulation,
         stride: Until,
         (near, seconds): (f64, f64),
-    ) -> Result<[f64; 2], Failure> {
+    ) -> Result<[f64; 2], PhysicsFailure> {
         let of_look = self.timed_row(simulation);
         let farther = (0..FARTHER).fold(stride, |stride, _| stride.doubled());
         let (begun, from) = (self.watch.now(), simulation.clock().time);
@@ -334,7 +337,7 @@ impl Trial<'_> {
         simulation: &mut dyn Simulation,
         prepared: &Prepared,
         [least, most]: [f64; 2],
-    ) -> Result<Until, Failure> {
+    ) -> Result<Until, PhysicsFailure> {
         let mut stride = first(prepared);
         loop {
             let begun = self.watch.now();
@@ -352,9 +355,9 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// [`Failure`] if it fails.
-    pub(crate) fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, Failure> {
+    pub(crate) fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, PhysicsFailure> {
         const STRETCHES: u32 = 4;
-        let mut simulation = prepared.start(Purpose::Run)?;
+        let mut simulation = prepared.start(StartPurpose::Run)?;
         let simulation = simulation.as_mut();
         let stride = self.stride(simulation, prepared, [seconds / f64::from(STRETCHES); 2])?;
         let mut least = f64::INFINITY;
@@ -369,7 +372,7 @@ impl Trial<'_> {
 
 /// States along a run of unknown length: once there are too many, every other one is dropped and the spacing doubles. Where forces depend on
 /// time, states are taken at whole periods: a run from such a state begins at time 0 with the right forces.
-struct States {
+struct StateSamples {
     period: Option<f64>,
     most: usize,
     every: usize,
@@ -377,10 +380,10 @@ struct States {
     kept: Vec<(f64, Particles)>,
 }
 
-impl States {
-    fn new(prepared: &Prepared) -> States {
+impl StateSamples {
+    fn new(prepared: &Prepared) -> StateSamples {
         let most = (KEPT / prepared.particles().len().max(1)).clamp(4, STATES);
-        States { period: prepared.model.period(), most, every: 1, seen: 0, kept: vec![] }
+        StateSamples { period: prepared.model.period(), most, every: 1, seen: 0, kept: vec![] }
     }
 
     /// Time of the next state (time): now, or the end of the current period.

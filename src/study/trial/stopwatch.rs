@@ -8,10 +8,10 @@ use stripmine_physics::method::Simulation;
 
 /// Clock of trials. Tests derive its time from work, so that a plan does not depend on the speed of the machine.
 #[derive(Debug)]
-pub(crate) struct Stopwatch(Kind);
+pub(crate) struct Stopwatch(StopwatchKind);
 
 #[derive(Debug)]
-enum Kind {
+enum StopwatchKind {
     Wall(Instant),
     Processor(ProcessTime),
     /// Nanoseconds so far, and per unit of work.
@@ -22,27 +22,27 @@ enum Kind {
 impl Stopwatch {
     /// Starts a wall clock.
     pub(crate) fn wall() -> Stopwatch {
-        Stopwatch(Kind::Wall(Instant::now()))
+        Stopwatch(StopwatchKind::Wall(Instant::now()))
     }
 
     /// Starts a processor clock, over all threads of this process.
     pub(crate) fn processor() -> Stopwatch {
-        Stopwatch(Kind::Processor(ProcessTime::now()))
+        Stopwatch(StopwatchKind::Processor(ProcessTime::now()))
     }
 
     /// Starts a synthetic clock: each unit of [`Simulation::work`] takes so many nanoseconds.
     #[cfg(test)]
     pub(crate) fn made(nanoseconds: f64) -> Stopwatch {
-        Stopwatch(Kind::Made(AtomicU64::new(0), nanoseconds))
+        Stopwatch(StopwatchKind::Made(AtomicU64::new(0), nanoseconds))
     }
 
     /// Seconds since the start.
     pub(crate) fn now(&self) -> f64 {
         match &self.0 {
-            Kind::Wall(begun) => begun.elapsed().as_secs_f64(),
-            Kind::Processor(begun) => begun.elapsed().as_secs_f64(),
+            StopwatchKind::Wall(begun) => begun.elapsed().as_secs_f64(),
+            StopwatchKind::Processor(begun) => begun.elapsed().as_secs_f64(),
             #[cfg(test)]
-            Kind::Made(nanoseconds, _) => 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64,
+            StopwatchKind::Made(nanoseconds, _) => 1e-9 * nanoseconds.load(Ordering::Relaxed) as f64,
         }
     }
 
@@ -53,7 +53,7 @@ impl Stopwatch {
         act: impl FnOnce(&mut dyn Simulation) -> R,
     ) -> R {
         #[cfg(test)]
-        if let Kind::Made(nanoseconds, each) = &self.0 {
+        if let StopwatchKind::Made(nanoseconds, each) = &self.0 {
             let before = simulation.work();
             let done = act(simulation);
             let spent = each * (simulation.work() - before);

@@ -5,13 +5,13 @@
 //! single runs therefore do not fall on a line over the step. The root mean square over the phases does, and so does the
 //! mean, which falls faster.
 
-use super::orders::{Fitted, fit};
-use crate::study::choice::Choice;
-use crate::study::runs::Runs;
-use crate::study::state::{State, delayed};
-use crate::study::trial::{Course, RunFailure};
+use super::orders::{FittedOrder, fit};
+use crate::study::choice::SettingChoice;
+use crate::study::runs::StudyRuns;
+use crate::study::state::{ParticleState, delayed};
+use crate::study::trial::{RunFailure, RunSampling};
 use crate::study::{StudyError, Subject};
-use stripmine_physics::method::{Decides, Purpose};
+use stripmine_physics::method::{ChoiceEffect, StartPurpose};
 use stripmine_physics::scene::Overrides;
 
 /// Outcomes of a collision: ratio of the relative speeds after and before, and the angle by which the relative velocity turns (radian).
@@ -50,9 +50,9 @@ pub(crate) struct OutcomeOrder {
     pub(crate) choice: String,
     pub outcome: &'static str,
     /// Order of the root mean square over the phases.
-    pub spread: Option<Fitted>,
+    pub spread: Option<FittedOrder>,
     /// Order of the mean over the phases.
-    pub mean: Option<Fitted>,
+    pub mean: Option<FittedOrder>,
 }
 
 /// True if a scene is a collision of two discs.
@@ -67,12 +67,12 @@ fn is_collision(subject: &Subject) -> bool {
 /// # Errors
 /// [`StudyError`] as for [`Runs::recall`].
 pub(crate) fn collision(
-    runs: &Runs<'_>,
+    runs: &StudyRuns<'_>,
     steps: &[f64],
     phases: u32,
 ) -> Result<Option<Collision>, StudyError> {
     let Some(&smallest) = steps.first().filter(|_| is_collision(runs.subject)) else { return Ok(None) };
-    let over_phases = |choice: &Choice, step: f64| -> Result<Option<Vec<[f64; 2]>>, StudyError> {
+    let over_phases = |choice: &SettingChoice, step: f64| -> Result<Option<Vec<[f64; 2]>>, StudyError> {
         let outcome = |phase: u32| {
             let key = format!("collision|{}|{step:?}|{phase}/{phases}", choice.label());
             let fits = |found: &Option<[f64; 2]>| found.iter().flatten().all(|value| value.is_finite());
@@ -85,11 +85,12 @@ pub(crate) fn collision(
     let first = runs.subject.reference(0);
     let Some(reference) = over_phases(&first, REFERENCE * smallest)? else { return Ok(None) };
     let reference = mean(&reference);
-    let is_alike = |choice: &Choice| {
-        [Decides::Digits, Decides::Cost].iter().all(|&decides| choice.agrees(&first, decides))
+    let is_alike = |choice: &SettingChoice| {
+        [ChoiceEffect::Digits, ChoiceEffect::Cost].iter().all(|&decides| choice.agrees(&first, decides))
     };
-    let schemes: Vec<Choice> = Choice::all(runs.subject.entry.axes).into_iter().filter(is_alike).collect();
-    let cases: Vec<(&Choice, f64)> =
+    let schemes: Vec<SettingChoice> =
+        SettingChoice::all(runs.subject.entry.axes).into_iter().filter(is_alike).collect();
+    let cases: Vec<(&SettingChoice, f64)> =
         schemes.iter().flat_map(|choice| steps.iter().map(move |step| (choice, *step))).collect();
     let found = runs.journal.over(&cases, |&(choice, step)| {
         let error = |outcomes: Vec<[f64; 2]>| {
@@ -102,7 +103,7 @@ pub(crate) fn collision(
         Ok::<_, StudyError>(over_phases(choice, step)?.map(error))
     })?;
     let errors: Vec<OutcomeError> = found.into_iter().flatten().collect();
-    let order = |choice: &Choice, i: usize| {
+    let order = |choice: &SettingChoice, i: usize| {
         let of = |error: fn(&OutcomeError) -> [f64; 2]| {
             let own = errors.iter().filter(|error| error.choice == choice.label());
             fit(&own.map(|it| (it.step, error(it)[i])).collect::<Vec<_>>(), 0.0, LARGE)
@@ -123,13 +124,18 @@ fn mean(values: &[[f64; 2]]) -> [f64; 2] {
 }
 
 /// Outcomes of a collision delayed by a time; none where the discs do not touch and separate.
-fn outcome(runs: &Runs<'_>, choice: &Choice, step: f64, late: f64) -> Result<Option<[f64; 2]>, RunFailure> {
+fn outcome(
+    runs: &StudyRuns<'_>,
+    choice: &SettingChoice,
+    step: f64,
+    late: f64,
+) -> Result<Option<[f64; 2]>, RunFailure> {
     let scene = delayed(&runs.subject.prepared_as(choice, step, &Overrides::new())?, late);
     let domain = scene.domain;
     let steps = (runs.subject.duration() / step).round() as u64;
-    let course = Course { steps, looks: 1, each: 1e-6 };
-    let end = runs.follow(&scene, Purpose::Measurement, course, |_| {})?;
-    let pair = |particles| State::of(particles).pair(&domain);
+    let course = RunSampling { steps, looks: 1, each: 1e-6 };
+    let end = runs.follow(&scene, StartPurpose::Measurement, course, |_| {})?;
+    let pair = |particles| ParticleState::of(particles).pair(&domain);
     let (Some((before, gap)), Some((after, apart))) = (pair(scene.particles()), pair(&end.particles()))
     else {
         return Ok(None);

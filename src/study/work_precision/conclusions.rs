@@ -1,6 +1,6 @@
 //! Conclusions of a diagram: the cheapest run for an error.
 
-use super::dataset::{Run, WorkPrecision};
+use super::dataset::{DiagramRun, WorkPrecision};
 use super::measures::Measure;
 use crate::study::TIE;
 
@@ -10,22 +10,23 @@ pub(crate) const WISHES: [f64; 5] = [3e-2, 1e-2, 1e-3, 1e-4, 1e-6];
 /// The cheapest run for an error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cheapest<'d> {
-    pub run: &'d Run,
+    pub run: &'d DiagramRun,
     /// Cost relative to the scene's own configuration at its own step; none where that one fails.
     pub(crate) of_own: Option<f64>,
 }
 
 /// Returns the cheapest run with an error of positions of at most `error`. Among ties it is the scene's own configuration, or the first in the order
 /// of the settings.
-fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&Run) -> bool) -> Option<Cheapest<'_>> {
-    let serves = |run: &&Run| is_meant(run) && run.error(Measure::Position).is_some_and(|it| it <= error);
-    let timed: Vec<(&Run, f64)> =
+fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&DiagramRun) -> bool) -> Option<Cheapest<'_>> {
+    let serves =
+        |run: &&DiagramRun| is_meant(run) && run.error(Measure::Position).is_some_and(|it| it <= error);
+    let timed: Vec<(&DiagramRun, f64)> =
         data.runs.iter().filter(serves).filter_map(|run| Some((run, run.cost()?))).collect();
     let least = timed.iter().map(|(_, cost)| *cost).reduce(f64::min)?;
     let tied = timed.into_iter().filter(|(_, cost)| *cost <= TIE * least);
-    let place = |run: &Run| (data.of(run).label != data.own, run.configuration);
+    let place = |run: &DiagramRun| (data.of(run).label != data.own, run.configuration);
     let (run, cost) = tied.min_by(|a, b| place(a.0).cmp(&place(b.0)).then(a.1.total_cmp(&b.1)))?;
-    let own = own_run(data).and_then(Run::cost);
+    let own = own_run(data).and_then(DiagramRun::cost);
     Some(Cheapest { run, of_own: own.map(|own| cost / own) })
 }
 
@@ -42,13 +43,13 @@ pub(crate) fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, Str
             let (label, step) = (&data.of(first).label, multiple(first.power));
             format!("every run has a warning; {label} at {step}: {}", first.objections())
         };
-        Some((wish, cheapest(data, wish, Run::is_sound).ok_or_else(denied)))
+        Some((wish, cheapest(data, wish, DiagramRun::is_sound).ok_or_else(denied)))
     };
     WISHES.into_iter().filter(|wish| *wish > floor).filter_map(answer).collect()
 }
 
 /// The scene's own configuration at its own step.
-pub(crate) fn own_run(data: &WorkPrecision) -> Option<&Run> {
+pub(crate) fn own_run(data: &WorkPrecision) -> Option<&DiagramRun> {
     data.runs.iter().find(|run| run.power == 0 && data.of(run).label == data.own)
 }
 
@@ -65,5 +66,5 @@ fn multiple(power: i32) -> String {
 /// or was not timed.
 pub(crate) fn as_good(data: &WorkPrecision) -> Option<Cheapest<'_>> {
     let error = own_run(data).filter(|_| data.undecided.is_none())?.error(Measure::Position)?;
-    cheapest(data, error, Run::is_sound).filter(|found| found.of_own.is_some())
+    cheapest(data, error, DiagramRun::is_sound).filter(|found| found.of_own.is_some())
 }

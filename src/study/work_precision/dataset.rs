@@ -1,11 +1,11 @@
 //! Errors and costs of a scene.
 
 use super::collision::Collision;
-use super::encounters::Encounters;
-use super::growth::{COMPARABLE, Growth};
+use super::encounters::ParticleEvents;
+use super::growth::{COMPARABLE, DisturbanceGrowth};
 use super::measures::{Errors, Measure};
-use super::orders::Fitted;
-use super::plan::Plan;
+use super::orders::FittedOrder;
+use super::plan::DiagramPlan;
 use crate::statistics::median;
 use crate::study::trial::RunFailure;
 use serde::{Deserialize, Serialize};
@@ -22,17 +22,17 @@ pub(crate) struct WorkPrecision {
     pub step: f64,
     /// Label of its own configuration.
     pub own: String,
-    pub(crate) growth: Growth,
-    pub(crate) plan: Plan,
+    pub(crate) growth: DisturbanceGrowth,
+    pub(crate) plan: DiagramPlan,
     pub duration: f64,
     /// Events per particle in that time.
-    pub(crate) encounters: Encounters,
+    pub(crate) encounters: ParticleEvents,
     /// Reason why no configuration is recommended: too few events in the compared time; none where there are enough.
     pub(crate) undecided: Option<String>,
-    pub(crate) reference: Reference,
-    pub(crate) configurations: Vec<Configuration>,
-    pub runs: Vec<Run>,
-    pub orders: Vec<Order>,
+    pub(crate) reference: DiagramReference,
+    pub(crate) configurations: Vec<DiagramConfiguration>,
+    pub runs: Vec<DiagramRun>,
+    pub orders: Vec<ConvergenceOrder>,
     /// Outcomes of the collision, for a scene of two discs.
     pub collision: Option<Collision>,
     /// Machine whose clock periods are computed.
@@ -40,7 +40,7 @@ pub(crate) struct WorkPrecision {
 }
 
 /// Diagrams, each with a name for its rows.
-pub(crate) type Scenes = [(String, WorkPrecision)];
+pub(crate) type NamedDiagrams = [(String, WorkPrecision)];
 
 impl WorkPrecision {
     /// Integrator of a configuration.
@@ -48,14 +48,14 @@ impl WorkPrecision {
         self.configurations.iter().find(|it| it.label == label).map_or("", |it| &it.scheme)
     }
 
-    pub(crate) fn of(&self, run: &Run) -> &Configuration {
+    pub(crate) fn of(&self, run: &DiagramRun) -> &DiagramConfiguration {
         &self.configurations[run.configuration]
     }
 }
 
 /// Reference that all runs are compared with.
 #[derive(Clone, Debug)]
-pub(crate) struct Reference {
+pub(crate) struct DiagramReference {
     /// Labels of its configuration, and of the second one.
     pub(crate) configurations: [String; 2],
     /// Its step (time).
@@ -70,7 +70,7 @@ pub(crate) struct Reference {
 
 /// A setting for each axis of the method.
 #[derive(Clone, Debug)]
-pub(crate) struct Configuration {
+pub(crate) struct DiagramConfiguration {
     /// Label of all settings.
     pub label: String,
     /// Settings that decide the order.
@@ -88,21 +88,21 @@ pub(crate) struct Configuration {
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Run {
+pub(crate) struct DiagramRun {
     /// Index of its configuration.
     pub(crate) configuration: usize,
     /// The step (time).
     pub step: f64,
     /// Power of two by which the step differs from the scene's own.
     pub(crate) power: i32,
-    pub outcome: Result<Finished, RunFailure>,
+    pub outcome: Result<DiagramResult, RunFailure>,
     /// Processor seconds per unit of time in each repeat.
     pub(crate) costs: Vec<f64>,
 }
 
 /// Results of a run that finished.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Finished {
+pub(crate) struct DiagramResult {
     pub(crate) errors: Errors,
     /// Warnings: an exceeded theoretical limit, a check before the run, or one during it.
     pub(crate) objections: Vec<String>,
@@ -110,7 +110,7 @@ pub(crate) struct Finished {
     pub clocks: Option<f64>,
 }
 
-impl Run {
+impl DiagramRun {
     /// Processor seconds per unit of time: the median.
     pub(crate) fn cost(&self) -> Option<f64> {
         (!self.costs.is_empty()).then(|| median(self.costs.iter().copied()))
@@ -138,12 +138,12 @@ impl Run {
 
 /// Order of convergence of an error.
 #[derive(Clone, Debug)]
-pub(crate) struct Order {
+pub(crate) struct ConvergenceOrder {
     /// Index of the configuration.
     pub(crate) configuration: usize,
     pub(crate) measure: Measure,
     /// Order of the measured errors; none for too few points.
-    pub(crate) fitted: Option<Fitted>,
+    pub(crate) fitted: Option<FittedOrder>,
     /// Theoretical order, with the reason.
     pub theory: Option<(f64, &'static str)>,
 }

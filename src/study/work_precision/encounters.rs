@@ -3,14 +3,14 @@
 
 use super::growth::own_in_full_digits;
 use crate::study::StudyError;
-use crate::study::runs::Runs;
-use crate::study::trial::Course;
+use crate::study::runs::StudyRuns;
+use crate::study::trial::RunSampling;
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{PI, TAU};
 use stripmine_physics::domain::Domain;
-use stripmine_physics::method::{Purpose, Simulation};
-use stripmine_physics::near::Near;
+use stripmine_physics::method::{Simulation, StartPurpose};
+use stripmine_physics::near::NeighbourSearch;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::Overrides;
 
@@ -19,14 +19,14 @@ const LOOKS: u64 = 1024;
 
 /// Mean number of events per particle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Encounters {
+pub(crate) struct ParticleEvents {
     /// True if contacts are counted, false for turns of the velocity.
     pub(crate) of_contacts: bool,
     /// Contacts that begin, including those of the start; or full turns of the velocity.
     pub(crate) each: f64,
 }
 
-impl Encounters {
+impl ParticleEvents {
     pub(crate) fn name(&self) -> &'static str {
         if self.of_contacts { "contacts" } else { "turns of the velocity" }
     }
@@ -38,52 +38,52 @@ impl Encounters {
 /// # Errors
 /// [`StudyError`] as for [`Runs::recall`].
 pub(crate) fn encounters(
-    runs: &Runs<'_>,
+    runs: &StudyRuns<'_>,
     step: f64,
     duration: f64,
     each: f64,
-) -> Result<Encounters, StudyError> {
+) -> Result<ParticleEvents, StudyError> {
     let of_contacts = runs.subject.trials.has_contacts;
-    let fits = |it: &Encounters| it.of_contacts == of_contacts && it.each.is_finite() && it.each >= 0.0;
+    let fits = |it: &ParticleEvents| it.of_contacts == of_contacts && it.each.is_finite() && it.each >= 0.0;
     let counted = runs.recall("encounters", fits, || {
-        let mut counts = (Contacts::new(runs.subject.prepared.domain), Turns::default());
+        let mut counts = (ContactCounter::new(runs.subject.prepared.domain), TurnCounter::default());
         let scene = runs.subject.prepared_as(&own_in_full_digits(runs.subject), step, &Overrides::new())?;
         let steps = (duration / step).round() as u64;
-        let course = Course { steps, looks: LOOKS.min(steps), each };
+        let course = RunSampling { steps, looks: LOOKS.min(steps), each };
         let look = |simulation: &dyn Simulation| {
             let particles = simulation.particles();
             if of_contacts { counts.0.look(&particles) } else { counts.1.look(&particles) }
         };
-        match runs.follow(&scene, Purpose::Measurement, course, look) {
+        match runs.follow(&scene, StartPurpose::Measurement, course, look) {
             Err(failure) if failure.is_interruption() => return Err(failure),
             Ok(_) | Err(_) => {}
         }
         let grains = runs.subject.prepared.particles().grain_count().max(1) as f64;
         let all = if of_contacts { counts.0.begun as f64 } else { counts.1.angle / TAU };
-        Ok(Encounters { of_contacts, each: all / grains })
+        Ok(ParticleEvents { of_contacts, each: all / grains })
     })?;
     // A scene that is refused has no events.
-    Ok(counted.unwrap_or(Encounters { of_contacts, each: 0.0 }))
+    Ok(counted.unwrap_or(ParticleEvents { of_contacts, each: 0.0 }))
 }
 
 /// Counter of contacts that begin.
-struct Contacts {
+struct ContactCounter {
     domain: Domain,
     standing: HashSet<[u32; 2]>,
     /// Number so far: a contact between two grains counts for each.
     begun: u64,
 }
 
-impl Contacts {
-    fn new(domain: Domain) -> Contacts {
-        Contacts { domain, standing: HashSet::new(), begun: 0 }
+impl ContactCounter {
+    fn new(domain: Domain) -> ContactCounter {
+        ContactCounter { domain, standing: HashSet::new(), begun: 0 }
     }
 
     fn look(&mut self, particles: &Particles) {
         let (discs, grains) = (particles.all(), particles.grain_count());
         let largest = particles.radii().map_or(0.0, |[_, largest]| largest);
         let places = discs.iter().map(|disc| self.domain.wrapped(disc.place()));
-        let near = Near::among(self.domain, places, 2.0 * largest);
+        let near = NeighbourSearch::among(self.domain, places, 2.0 * largest);
         let mut standing = HashSet::new();
         for (disc, number) in discs[..grains].iter().zip(0_u32..) {
             let place = self.domain.wrapped(disc.place());
@@ -103,13 +103,13 @@ impl Contacts {
 
 /// Counter of turns of the velocity.
 #[derive(Default)]
-struct Turns {
+struct TurnCounter {
     directions: HashMap<u32, f64>,
     /// Total angle so far, summed over the particles (radian).
     angle: f64,
 }
 
-impl Turns {
+impl TurnCounter {
     fn look(&mut self, particles: &Particles) {
         for body in particles.grains() {
             let [u, v] = body.planar_velocity();
@@ -128,9 +128,9 @@ impl Turns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_physics::particles::{Kind, Particle, in_space};
+    use stripmine_physics::particles::{Particle, ParticleKind, in_space};
 
-    fn disc(id: u32, kind: Kind, x: f64, velocity: [f64; 2]) -> Particle {
+    fn disc(id: u32, kind: ParticleKind, x: f64, velocity: [f64; 2]) -> Particle {
         Particle {
             id,
             kind,
@@ -147,9 +147,9 @@ mod tests {
     #[test]
     fn a_contact_counts_when_it_begins() {
         let domain = Domain::planar([0.0; 2], [10.0, 4.0], [true, false]);
-        let mut contacts = Contacts::new(domain);
+        let mut contacts = ContactCounter::new(domain);
         let mut look = |x: [f64; 3]| {
-            let kinds = [Kind::Grain, Kind::Grain, Kind::Wall];
+            let kinds = [ParticleKind::Grain, ParticleKind::Grain, ParticleKind::Wall];
             let all = kinds.iter().zip(x).zip(1..);
             contacts.look(&Particles::new(all.map(|((&kind, x), id)| disc(id, kind, x, [0.0; 2])).collect()));
             contacts.begun
@@ -161,12 +161,12 @@ mod tests {
 
     #[test]
     fn circle_counts_as_one_turn() {
-        let mut turns = Turns::default();
+        let mut turns = TurnCounter::default();
         for step in 0..=16 {
             let angle = TAU * f64::from(step) / 16.0;
             let velocities = [[angle.cos(), angle.sin()], [angle.cos(), -angle.sin()]];
             let all = velocities.iter().zip(1..);
-            turns.look(&Particles::new(all.map(|(&v, id)| disc(id, Kind::Grain, 2.0, v)).collect()));
+            turns.look(&Particles::new(all.map(|(&v, id)| disc(id, ParticleKind::Grain, 2.0, v)).collect()));
         }
         assert!((turns.angle / TAU - 2.0).abs() < 1e-12, "{}", turns.angle);
     }

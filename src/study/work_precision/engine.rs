@@ -1,20 +1,20 @@
 //! Runs of a diagram.
 
-use super::Effort;
-use super::dataset::{Configuration, Finished, Order, Reference, Run};
+use super::DiagramEffort;
+use super::dataset::{ConvergenceOrder, DiagramConfiguration, DiagramReference, DiagramResult, DiagramRun};
 use super::measures::{Errors, Measure, errors};
 use super::orders::fit;
-use super::plan::{BELOW, COARSEST, Plan};
-use crate::model::clock::{Clock, Work};
+use super::plan::{BELOW, COARSEST, DiagramPlan};
+use crate::model::clock::{Clock, ProgramWork};
 use crate::model::machine::MachineModel;
-use crate::study::alarm::{Alarm, Finding};
-use crate::study::choice::Choice;
-use crate::study::runs::Runs;
-use crate::study::state::State;
-use crate::study::trial::{Cause, Course, RunFailure};
+use crate::study::alarm::{Alarm, WarningLevel};
+use crate::study::choice::SettingChoice;
+use crate::study::runs::StudyRuns;
+use crate::study::state::ParticleState;
+use crate::study::trial::{FailureCause, RunFailure, RunSampling};
 use crate::study::{StudyError, Subject};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::method::{Decides, Purpose, Simulation};
+use stripmine_physics::method::{ChoiceEffect, Simulation, StartPurpose};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
@@ -35,20 +35,23 @@ fn is_time(seconds: &f64) -> bool {
 ///
 /// # Errors
 /// [`StudyError`] as for [`Runs::recall`].
-pub(crate) fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<Configuration>, StudyError> {
+pub(crate) fn configurations(
+    runs: &StudyRuns<'_>,
+    choices: &[SettingChoice],
+) -> Result<Vec<DiagramConfiguration>, StudyError> {
     let subject = runs.subject;
-    let of = |choice: &Choice| {
+    let of = |choice: &SettingChoice| {
         let each = runs.recall(&format!("probe|{}", choice.label()), is_time, || {
             runs.probe(&subject.prepared_as(choice, subject.step, &Overrides::new())?)
         })?;
         let agrees = |decides| choice.agrees(&subject.own, decides);
-        Ok(Configuration {
+        Ok(DiagramConfiguration {
             label: choice.label(),
-            scheme: choice.names(Decides::Order).join(" "),
-            digits: choice.names(Decides::Digits).join(" "),
-            cost: choice.names(Decides::Cost).join(" "),
-            is_primary: agrees(Decides::Cost),
-            is_own_arithmetic: agrees(Decides::Order) && agrees(Decides::Digits),
+            scheme: choice.names(ChoiceEffect::Order).join(" "),
+            digits: choice.names(ChoiceEffect::Digits).join(" "),
+            cost: choice.names(ChoiceEffect::Cost).join(" "),
+            is_primary: agrees(ChoiceEffect::Cost),
+            is_own_arithmetic: agrees(ChoiceEffect::Order) && agrees(ChoiceEffect::Digits),
             each,
         })
     };
@@ -56,19 +59,19 @@ pub(crate) fn configurations(runs: &Runs<'_>, choices: &[Choice]) -> Result<Vec<
 }
 
 /// Planned runs of a diagram.
-pub(crate) struct Planned<'p> {
-    pub runs: &'p Runs<'p>,
-    pub(crate) effort: &'p Effort,
-    pub choices: &'p [Choice],
+pub(crate) struct PlannedDiagram<'p> {
+    pub runs: &'p StudyRuns<'p>,
+    pub(crate) effort: &'p DiagramEffort,
+    pub choices: &'p [SettingChoice],
     /// Seconds of a step, by index of the choice.
     pub rates: &'p [Option<f64>],
-    pub(crate) plan: &'p Plan,
+    pub(crate) plan: &'p DiagramPlan,
 }
 
 /// Results at the end of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Ended {
-    state: State,
+struct RunEnd {
+    state: ParticleState,
     /// Error of the energy balance (moving energy).
     balance: Option<f64>,
     /// Clock periods per step.
@@ -77,7 +80,7 @@ struct Ended {
     objections: Vec<String>,
 }
 
-impl Planned<'_> {
+impl PlannedDiagram<'_> {
     fn subject(&self) -> &Subject {
         self.runs.subject
     }
@@ -98,11 +101,11 @@ impl Planned<'_> {
     }
 
     /// Runs a choice to the end of the time.
-    fn ended(&self, choice: &Choice, power: i32, each: f64) -> Result<Ended, RunFailure> {
+    fn ended(&self, choice: &SettingChoice, power: i32, each: f64) -> Result<RunEnd, RunFailure> {
         let scene = self.subject().prepared_as(choice, self.step(power), &Overrides::new())?;
         let mut alarms = Alarm::before(&scene);
         let steps = self.steps(power);
-        let course = Course { steps, looks: LOOKS.min(steps), each };
+        let course = RunSampling { steps, looks: LOOKS.min(steps), each };
         let (mut worst, mut scale, mut clocks) = (0.0, 0.0, vec![]);
         let look = |simulation: &dyn Simulation| {
             let machine = self.effort.machine.as_ref();
@@ -112,18 +115,18 @@ impl Planned<'_> {
             worst = f64::max(worst, balance.error(&values).abs());
             scale = f64::max(scale, balance.energies(&values));
         };
-        let end = self.runs.follow(&scene, Purpose::Run, course, look)?;
+        let end = self.runs.follow(&scene, StartPurpose::Run, course, look)?;
         alarms.extend(end.warnings().iter().map(Alarm::of_run));
-        let told = alarms.into_iter().filter(|alarm| alarm.finding != Finding::Within);
-        Ok(Ended {
-            state: State::of(&end.particles()),
+        let told = alarms.into_iter().filter(|alarm| alarm.finding != WarningLevel::Within);
+        Ok(RunEnd {
+            state: ParticleState::of(&end.particles()),
             balance: (scale > 0.0).then(|| worst / scale),
             clocks: (!clocks.is_empty()).then(|| clocks.iter().sum::<f64>() / clocks.len() as f64),
             objections: told.map(|alarm| alarm.message).collect(),
         })
     }
 
-    fn errors(&self, Ended { state, balance, .. }: &Ended, reference: &State) -> Errors {
+    fn errors(&self, RunEnd { state, balance, .. }: &RunEnd, reference: &ParticleState) -> Errors {
         let subject = self.subject();
         let inertia = (subject.trials.inertia)(&subject.values);
         let length = (subject.trials.length.of)(subject.prepared.particles());
@@ -137,15 +140,15 @@ impl Planned<'_> {
     ///
     /// # Errors
     /// [`StudyError::EveryRunFails`] if one of the three fails.
-    pub(crate) fn reference(&self, each: f64) -> Result<(Reference, State), StudyError> {
+    pub(crate) fn reference(&self, each: f64) -> Result<(DiagramReference, ParticleState), StudyError> {
         let choices = [0, 1].map(|number| self.subject().reference(number));
         let [first, second] = &choices;
         let power = -(self.plan.finest + BELOW);
         let cases = [(first, power), (first, power + 1), (second, power)];
-        let ends: Vec<Ended> = self.runs.journal.over(&cases, |&(choice, power)| {
+        let ends: Vec<RunEnd> = self.runs.journal.over(&cases, |&(choice, power)| {
             let key = format!("reference|{}|{power}", choice.label());
             let grains = self.subject().prepared.particles().grain_count();
-            let fits = |ended: &Ended| ended.state.len() == grains;
+            let fits = |ended: &RunEnd| ended.state.len() == grains;
             let ended = self.runs.recall(&key, fits, || self.ended(choice, power, each))?;
             ended.map_err(|failure| {
                 let step = significant(self.step(power), 6);
@@ -163,7 +166,7 @@ impl Planned<'_> {
             *error = off[0].max(off[1]);
         }
         let configurations = choices.map(|choice| choice.label());
-        let reference = Reference { configurations, step: self.step(power), halving, second, floor };
+        let reference = DiagramReference { configurations, step: self.step(power), halving, second, floor };
         Ok((reference, best.state.clone()))
     }
 
@@ -171,14 +174,19 @@ impl Planned<'_> {
     ///
     /// # Errors
     /// [`StudyError`] as for [`Runs::recall`].
-    pub(super) fn all(&self, reference: &Reference, state: &State) -> Result<Vec<Run>, StudyError> {
+    pub(super) fn all(
+        &self,
+        reference: &DiagramReference,
+        state: &ParticleState,
+    ) -> Result<Vec<DiagramRun>, StudyError> {
         let floor = ABOVE_FLOOR * reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
-        let runs: Vec<Vec<Run>> = self.runs.journal.over(&self.plan.choices, |&configuration| {
-            let mut runs: Vec<Run> = vec![];
+        let runs: Vec<Vec<DiagramRun>> = self.runs.journal.over(&self.plan.choices, |&configuration| {
+            let mut runs: Vec<DiagramRun> = vec![];
             for power in (-self.plan.finest..=0).rev() {
                 runs.push(self.run(configuration, power, state)?);
                 // A single error may be small by coincidence.
-                let is_fine = |run: &Run| run.error(Measure::Position).is_some_and(|error| error < floor);
+                let is_fine =
+                    |run: &DiagramRun| run.error(Measure::Position).is_some_and(|error| error < floor);
                 if matches!(runs.as_slice(), [.., before, last] if is_fine(before) && is_fine(last)) {
                     break;
                 }
@@ -199,21 +207,26 @@ impl Planned<'_> {
         Ok(runs.into_iter().flatten().collect())
     }
 
-    fn run(&self, configuration: usize, power: i32, reference: &State) -> Result<Run, StudyError> {
+    fn run(
+        &self,
+        configuration: usize,
+        power: i32,
+        reference: &ParticleState,
+    ) -> Result<DiagramRun, StudyError> {
         let choice = &self.choices[configuration];
         let each = self.rates[configuration].unwrap_or(0.0);
-        let fits = |run: &Finished| run.errors.values().copied().all(f64::is_finite);
+        let fits = |run: &DiagramResult| run.errors.values().copied().all(f64::is_finite);
         let outcome = self.runs.recall(&format!("run|{}|{power}", choice.label()), fits, || {
             let end = self.ended(choice, power, each)?;
             let errors = self.errors(&end, reference);
             if let Some((measure, error)) = errors.iter().find(|(_, error)| !error.is_finite()) {
                 let why = format!("the error of the {} is {error}", measure.name());
-                return Err(RunFailure { cause: Cause::NonFinite, why });
+                return Err(RunFailure { cause: FailureCause::NonFinite, why });
             }
             let clocks = end.clocks.map(|each| each * self.steps(power) as f64 / self.duration());
-            Ok(Finished { errors, objections: end.objections, clocks })
+            Ok(DiagramResult { errors, objections: end.objections, clocks })
         })?;
-        Ok(Run { configuration, step: self.step(power), power, outcome, costs: vec![] })
+        Ok(DiagramRun { configuration, step: self.step(power), power, outcome, costs: vec![] })
     }
 
     /// Times the runs that finished, on the first of several processes, in alternating repeats: as many as requested, and more while there
@@ -221,7 +234,7 @@ impl Planned<'_> {
     ///
     /// # Errors
     /// [`StudyError`] as for [`Runs::recall`].
-    pub(super) fn time(&self, runs: &mut [Run], begun: f64) -> Result<(), StudyError> {
+    pub(super) fn time(&self, runs: &mut [DiagramRun], begun: f64) -> Result<(), StudyError> {
         let watch = self.runs.trial.watch;
         let repeats = if self.runs.journal.is_first() { MORE * self.effort.repeats } else { 0 };
         for repeat in 0..repeats {
@@ -248,10 +261,11 @@ impl Planned<'_> {
     }
 
     /// Orders of convergence of positions and energy, for every scheme in the precision of the reference.
-    pub(crate) fn orders(&self, runs: &[Run], reference: &Reference) -> Vec<Order> {
+    pub(crate) fn orders(&self, runs: &[DiagramRun], reference: &DiagramReference) -> Vec<ConvergenceOrder> {
         let first = self.subject().reference(0);
-        let is_fitted = |choice: &Choice| {
-            choice.agrees(&first, Decides::Digits) && choice.agrees(&self.subject().own, Decides::Cost)
+        let is_fitted = |choice: &SettingChoice| {
+            choice.agrees(&first, ChoiceEffect::Digits)
+                && choice.agrees(&self.subject().own, ChoiceEffect::Cost)
         };
         let order = |configuration: usize, measure: Measure| {
             let floor = reference.floor.get(&measure).copied().unwrap_or(0.0);
@@ -260,7 +274,7 @@ impl Planned<'_> {
                 own.filter_map(|run| Some((run.step, run.error(measure)?))).collect();
             let scheme = self.choices[configuration].scheme().filter(|_| measure == Measure::Position);
             let theory = scheme.and_then(|scheme| self.subject().theory(scheme));
-            Order {
+            ConvergenceOrder {
                 configuration,
                 measure,
                 fitted: fit(&errors, ABOVE_FLOOR * floor, f64::INFINITY),
@@ -279,6 +293,6 @@ fn clock_periods(machine: &MachineModel, simulation: &dyn Simulation) -> Option<
     let operations = simulation.operations();
     let is_counted = !operations.is_empty();
     let clocks =
-        operations.into_iter().map(|(counts, n)| Clock::Paper.clocks(machine, &Work::from(counts), n));
+        operations.into_iter().map(|(counts, n)| Clock::Paper.clocks(machine, &ProgramWork::from(counts), n));
     is_counted.then(|| clocks.sum())
 }

@@ -1,19 +1,19 @@
 //! Frames of diagrams.
 
 use super::conclusions::{as_good, own_run, wishes as wishes_of};
-use super::dataset::{Configuration, Run, Scenes, WorkPrecision};
+use super::dataset::{DiagramConfiguration, DiagramRun, NamedDiagrams, WorkPrecision};
 use super::growth::EndedBy;
 use super::measures::{Errors, Measure};
-use super::orders::Fitted;
+use super::orders::FittedOrder;
 use super::points::{drawn, growth, outcomes};
-use crate::frame::{Cell, Frame, Rows};
-use crate::results::Made;
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::results::FinishedItem;
 use crate::statistics::median;
 use crate::study::trial::RunFailure;
 
 /// Returns the frames of diagrams, each with a name for its rows.
-pub(crate) fn made(scenes: &Scenes) -> Made {
-    Made::of([
+pub(crate) fn made(scenes: &NamedDiagrams) -> FinishedItem {
+    FinishedItem::of([
         of_scenes(scenes),
         wishes(scenes),
         errors(scenes),
@@ -29,8 +29,8 @@ pub(crate) fn made(scenes: &Scenes) -> Made {
 }
 
 /// A row for each scene: its own configuration, the cheapest that is as accurate, and the limits of the comparison.
-fn of_scenes(scenes: &Scenes) -> Frame {
-    Rows::of(scenes)
+fn of_scenes(scenes: &NamedDiagrams) -> ResultFrame {
+    FrameBuilder::of(scenes)
         .text("scene", |(name, _)| name)
         .count("particles", |(_, data)| data.particles)
         .text("unit", |(_, data)| &data.unit)
@@ -43,7 +43,7 @@ fn of_scenes(scenes: &Scenes) -> Frame {
         .short("error of the reference", |(_, data)| data.reference.floor.get(&Measure::Position).copied())
         .short("own error", |(_, data)| own_run(data)?.error(Measure::Position))
         .text("own failure", |(_, data)| own_run(data).map_or("", why))
-        .text("own objections", |(_, data)| own_run(data).map_or(String::new(), Run::objections))
+        .text("own objections", |(_, data)| own_run(data).map_or(String::new(), DiagramRun::objections))
         .text("as accurate", |(_, data)| as_good(data).map_or("", |found| &data.of(found.run).label))
         .short("its step (own steps)", |(_, data)| as_good(data).map(|found| in_own_steps(found.run)))
         .number("its cost over the own cost", 3, |(_, data)| as_good(data)?.of_own)
@@ -58,25 +58,25 @@ fn of_scenes(scenes: &Scenes) -> Frame {
 }
 
 /// Step in multiples of the scene's own.
-fn in_own_steps(run: &Run) -> f64 {
+fn in_own_steps(run: &DiagramRun) -> f64 {
     libm::exp2(f64::from(run.power))
 }
 
 /// Reason of the failure of a run; empty where it finished.
-fn why(run: &Run) -> &str {
+fn why(run: &DiagramRun) -> &str {
     run.outcome.as_ref().err().map_or("", |failure| &failure.why)
 }
 
 /// Relative difference of the repeats of a run: the median over the runs.
 fn spread(data: &WorkPrecision) -> f64 {
-    let of = |run: &Run| {
+    let of = |run: &DiagramRun| {
         let [least, most] = [f64::min, f64::max].map(|end| run.costs.iter().copied().reduce(end));
         Some(most? / least? - 1.0)
     };
     median(data.runs.iter().filter_map(of))
 }
 
-fn wishes(scenes: &Scenes) -> Frame {
+fn wishes(scenes: &NamedDiagrams) -> ResultFrame {
     let answers = scenes.iter().flat_map(|(name, data)| {
         let answers = wishes_of(data).into_iter().map(|(wish, answer)| match answer {
             Ok(found) => (wish, data.of(found.run).label.clone(), Some(found)),
@@ -84,7 +84,7 @@ fn wishes(scenes: &Scenes) -> Frame {
         });
         answers.map(move |(wish, said, found)| (name, wish, said, found))
     });
-    Rows::of(answers)
+    FrameBuilder::of(answers)
         .text("scene", |(name, ..)| *name)
         .short("error wished for, at most (radii; sizes of a system of bodies)", |(_, wish, ..)| *wish)
         .text("cheapest configuration", |(_, _, said, _)| said.clone())
@@ -99,17 +99,17 @@ fn wishes(scenes: &Scenes) -> Frame {
 }
 
 /// Shortest and longest step of a fit.
-fn steps_of(fitted: Option<Fitted>) -> [Cell; 2] {
-    fitted.map_or([Cell::Nothing, Cell::Nothing], |it| it.range.map(Cell::Short))
+fn steps_of(fitted: Option<FittedOrder>) -> [TableCell; 2] {
+    fitted.map_or([TableCell::Nothing, TableCell::Nothing], |it| it.range.map(TableCell::Short))
 }
 
 /// Headings of these steps.
 const STEPS_OF: [&str; 2] = ["shortest step of the fit", "longest step of the fit"];
 
-fn orders(scenes: &Scenes) -> Frame {
+fn orders(scenes: &NamedDiagrams) -> ResultFrame {
     let orders =
         scenes.iter().flat_map(|(name, data)| data.orders.iter().map(move |order| (name, data, order)));
-    Rows::of(orders)
+    FrameBuilder::of(orders)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, data, order)| &data.configurations[order.configuration].scheme)
         .text("error", |(.., order)| order.measure.name())
@@ -120,12 +120,12 @@ fn orders(scenes: &Scenes) -> Frame {
         .frame("orders", "Orders of convergence, measured and theoretical")
 }
 
-fn of_collisions(scenes: &Scenes) -> Frame {
+fn of_collisions(scenes: &NamedDiagrams) -> ResultFrame {
     let orders = scenes.iter().flat_map(|(name, data)| {
         let orders = data.collision.iter().flat_map(|collision| &collision.orders);
         orders.map(move |order| (name, data, order))
     });
-    Rows::of(orders)
+    FrameBuilder::of(orders)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, data, order)| data.scheme(&order.choice))
         .text("outcome", |(.., order)| order.outcome)
@@ -136,17 +136,17 @@ fn of_collisions(scenes: &Scenes) -> Frame {
 }
 
 /// All errors at the scene's own step.
-fn errors(scenes: &Scenes) -> Frame {
+fn errors(scenes: &NamedDiagrams) -> ResultFrame {
     let own = scenes.iter().flat_map(|(name, data)| {
         let own = data.runs.iter().filter(|run| run.power == 0 && data.of(run).is_primary);
         own.map(move |run| (name, data.of(run), run))
     });
-    let rows = Rows::of(own)
+    let rows = FrameBuilder::of(own)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, it, _)| &it.scheme)
         .text("precision", |(_, it, _)| &it.digits);
-    let with_errors = |rows: Rows<_>, measure: Measure| {
-        rows.short(measure.name(), move |(.., run): &(_, _, &Run)| run.error(measure))
+    let with_errors = |rows: FrameBuilder<_>, measure: Measure| {
+        rows.short(measure.name(), move |(.., run): &(_, _, &DiagramRun)| run.error(measure))
     };
     Measure::ALL
         .into_iter()
@@ -155,14 +155,14 @@ fn errors(scenes: &Scenes) -> Frame {
         .frame("errors", "All errors at the scene's own step")
 }
 
-fn references(scenes: &Scenes) -> Frame {
+fn references(scenes: &NamedDiagrams) -> ResultFrame {
     let ended_by = |ended_by: &EndedBy| match ended_by {
         EndedBy::Growth => "the error at four times the step reaches a tenth of a radius",
         EndedBy::Scene => "the scene ends",
         EndedBy::Budget => "more would take too long",
     };
     let of = |errors: &Errors| errors.get(&Measure::Position).copied();
-    Rows::of(scenes)
+    FrameBuilder::of(scenes)
         .text("scene", |(name, _)| name)
         .short("growth of a disturbance (1/time)", |(_, data)| data.growth.rate)
         .short("comparable up to (time)", |(_, data)| data.growth.window)
@@ -181,16 +181,16 @@ fn references(scenes: &Scenes) -> Frame {
         .frame("references", "Compared time, and error of the reference")
 }
 
-fn failed(scenes: &Scenes) -> Frame {
+fn failed(scenes: &NamedDiagrams) -> ResultFrame {
     let failed = scenes.iter().flat_map(|(name, data)| {
         let refused = refused(data).into_iter().map(|(what, why)| (what, None, why));
         let failed = broken(data).into_iter().map(|(what, step, why)| (what, Some(step), why));
         refused.chain(failed).map(move |(what, step, failure)| (name, what, step, failure))
     });
-    Rows::of(failed)
+    FrameBuilder::of(failed)
         .text("scene", |(name, ..)| *name)
         .text("configuration", |(_, what, ..)| what.clone())
-        .cell("step", |(_, _, step, _)| step.map_or(Cell::from("any"), Cell::Short))
+        .cell("step", |(_, _, step, _)| step.map_or(TableCell::from("any"), TableCell::Short))
         .text("failure", |(.., failure)| failure.cause.name())
         .text("why", |(.., failure)| &failure.why)
         .frame("failed", "Failures and their reasons")
@@ -201,7 +201,7 @@ fn refused(data: &WorkPrecision) -> Vec<(String, &RunFailure)> {
     let mut all: Vec<(String, &RunFailure)> = vec![];
     for it in &data.configurations {
         let Err(failure) = &it.each else { continue };
-        let alike = |other: &&Configuration| other.cost == it.cost;
+        let alike = |other: &&DiagramConfiguration| other.cost == it.cost;
         let is_all = data.configurations.iter().filter(alike).all(|other| other.each == it.each);
         let what =
             if is_all { format!("any integrator and precision, {}", it.cost) } else { it.label.clone() };
@@ -231,17 +231,17 @@ fn broken(data: &WorkPrecision) -> Vec<(String, f64, &RunFailure)> {
 }
 
 /// Every run of every scene, for programs.
-fn runs(scenes: &Scenes) -> Frame {
+fn runs(scenes: &NamedDiagrams) -> ResultFrame {
     let runs = scenes
         .iter()
         .flat_map(|(name, data)| data.runs.iter().map(move |run| (name, &data.of(run).label, run)));
-    let end = |run: &Run, pick: fn(f64, f64) -> f64| run.costs.iter().copied().reduce(pick);
-    let rows = Rows::of(runs)
+    let end = |run: &DiagramRun, pick: fn(f64, f64) -> f64| run.costs.iter().copied().reduce(pick);
+    let rows = FrameBuilder::of(runs)
         .text("scene", |(name, ..)| *name)
         .text("configuration", |(_, label, _)| *label)
         .short("step", |(.., run)| run.step);
-    let with_errors = |rows: Rows<_>, measure: Measure| {
-        rows.number(measure.name(), 0, move |(.., run): &(_, _, &Run)| run.error(measure))
+    let with_errors = |rows: FrameBuilder<_>, measure: Measure| {
+        rows.number(measure.name(), 0, move |(.., run): &(_, _, &DiagramRun)| run.error(measure))
     };
     Measure::ALL
         .into_iter()

@@ -1,13 +1,13 @@
 //! Growth of a small disturbance, and the time over which trajectories are comparable.
 
 use crate::statistics::slope;
-use crate::study::choice::Choice;
-use crate::study::runs::Runs;
-use crate::study::state::{State, displaced};
+use crate::study::choice::SettingChoice;
+use crate::study::runs::StudyRuns;
+use crate::study::state::{ParticleState, displaced};
 use crate::study::trial::RunFailure;
 use crate::study::{StudyError, Subject};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::method::{Decides, Prepared, Purpose};
+use stripmine_physics::method::{ChoiceEffect, Prepared, StartPurpose};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
@@ -26,7 +26,7 @@ const HALVINGS: i32 = 3;
 
 /// Distances over time, and the window in which trajectories are comparable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Growth {
+pub(crate) struct DisturbanceGrowth {
     /// Step of the runs (time).
     pub step: f64,
     /// Times of the samples (time).
@@ -50,10 +50,10 @@ pub(crate) enum EndedBy {
     Budget,
 }
 
-impl Growth {
+impl DisturbanceGrowth {
     /// True if it can come from runs of the scene: as many distances as times, within the duration of the scene.
     fn is_of(&self, subject: &Subject) -> bool {
-        let Growth { step, times, separation, error, rate, window, .. } = self;
+        let DisturbanceGrowth { step, times, separation, error, rate, window, .. } = self;
         let whole = subject.duration() * (1.0 + 1e-9);
         let least = subject.step * 0.5f64.powi(HALVINGS);
         let all = times.iter().chain(separation).chain(error).chain(rate).chain([step, window]);
@@ -70,7 +70,7 @@ impl Growth {
 ///
 /// # Errors
 /// [`StudyError::EveryRunFails`] if no step works.
-pub(crate) fn growth(runs: &Runs<'_>, most: u64, each: f64) -> Result<Growth, StudyError> {
+pub(crate) fn growth(runs: &StudyRuns<'_>, most: u64, each: f64) -> Result<DisturbanceGrowth, StudyError> {
     let own = own_in_full_digits(runs.subject);
     let mut tried = vec![];
     for halvings in 0..=HALVINGS {
@@ -86,11 +86,11 @@ pub(crate) fn growth(runs: &Runs<'_>, most: u64, each: f64) -> Result<Growth, St
 }
 
 fn longer_by_reference(
-    runs: &Runs<'_>,
-    own: &Choice,
-    first: Growth,
+    runs: &StudyRuns<'_>,
+    own: &SettingChoice,
+    first: DisturbanceGrowth,
     course: (u64, f64),
-) -> Result<Growth, StudyError> {
+) -> Result<DisturbanceGrowth, StudyError> {
     let reference = runs.subject.reference(0);
     if first.ended_by != EndedBy::Growth || reference == *own {
         return Ok(first);
@@ -101,13 +101,13 @@ fn longer_by_reference(
 
 /// Growth at the scene's own step, halved some times, over a number of own steps.
 fn of_step(
-    runs: &Runs<'_>,
-    choice: &Choice,
+    runs: &StudyRuns<'_>,
+    choice: &SettingChoice,
     halvings: i32,
     (most, each): (u64, f64),
-) -> Result<Result<Growth, RunFailure>, StudyError> {
+) -> Result<Result<DisturbanceGrowth, RunFailure>, StudyError> {
     let step = runs.subject.step * 0.5f64.powi(halvings);
-    let fits = |growth: &Growth| growth.is_of(runs.subject);
+    let fits = |growth: &DisturbanceGrowth| growth.is_of(runs.subject);
     runs.recall(&format!("growth|{}|{halvings}", choice.label()), fits, || {
         let mut growth = observed(runs, choice, step, (most << halvings, each))?;
         while growth.ended_by == EndedBy::Growth && (2..FEW).contains(&growth.times.len()) {
@@ -122,20 +122,20 @@ fn of_step(
 }
 
 /// The scene's own configuration in the precision of the reference: a small disturbance must not be lost in rounding.
-pub(crate) fn own_in_full_digits(subject: &Subject) -> Choice {
+pub(crate) fn own_in_full_digits(subject: &Subject) -> SettingChoice {
     let is_of_digits = |name: &str| {
-        subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == Decides::Digits)
+        subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == ChoiceEffect::Digits)
     };
     let [first, _] = subject.trials.references;
     subject.own.with(&first.iter().copied().filter(|(axis, _)| is_of_digits(axis)).collect::<Vec<_>>())
 }
 
 fn observed(
-    runs: &Runs<'_>,
-    choice: &Choice,
+    runs: &StudyRuns<'_>,
+    choice: &SettingChoice,
     step: f64,
     (most, each): (u64, f64),
-) -> Result<Growth, RunFailure> {
+) -> Result<DisturbanceGrowth, RunFailure> {
     let subject = runs.subject;
     let prepared = |step| subject.prepared_as(choice, step, &Overrides::new());
     let (base, halved) = (prepared(step)?, prepared(0.5 * step)?);
@@ -146,10 +146,10 @@ fn observed(
         let angle = 2.399_963_229_728_653 * (place as f64 + 1.0);
         [libm::cos(angle), libm::sin(angle)].map(|part| DISTURBANCE * length * part)
     }));
-    let begin = |scene: &Prepared| scene.start(Purpose::Measurement);
+    let begin = |scene: &Prepared| scene.start(StartPurpose::Measurement);
     let mut all = [(begin(&base)?, 1), (begin(&disturbed)?, 1), (begin(&halved)?, 2)];
     let looks = LOOKS.min(most);
-    let mut growth = Growth {
+    let mut growth = DisturbanceGrowth {
         step,
         times: vec![],
         separation: vec![],
@@ -164,8 +164,8 @@ fn observed(
             runs.trial.advance_to_step(simulation.as_mut(), *times * steps)?;
         }
         runs.meter.add(4.0 * each * (steps - most * (look - 1) / looks) as f64);
-        let [base, disturbed, halved] = all.each_ref().map(|(run, _)| State::of(&run.particles()));
-        let apart = |other: &State| base.distance(other, &domain)[0] / length;
+        let [base, disturbed, halved] = all.each_ref().map(|(run, _)| ParticleState::of(&run.particles()));
+        let apart = |other: &ParticleState| base.distance(other, &domain)[0] / length;
         let error = apart(&halved);
         growth.times.push(steps as f64 * step);
         growth.separation.push(apart(&disturbed));

@@ -1,6 +1,6 @@
 //! Error measures of a run.
 
-use crate::study::state::State;
+use crate::study::state::ParticleState;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::domain::Domain;
 
@@ -46,8 +46,8 @@ pub(crate) type Errors = std::collections::BTreeMap<Measure, f64>;
 
 /// Errors of a state compared with the reference's; distances are given in units of `length`.
 pub(crate) fn errors(
-    state: &State,
-    reference: &State,
+    state: &ParticleState,
+    reference: &ParticleState,
     (domain, length): (&Domain, f64),
     inertia: Option<f64>,
 ) -> Errors {
@@ -57,7 +57,7 @@ pub(crate) fn errors(
     if scale > 0.0 {
         errors.insert(Measure::Momentum, (ours[0] - theirs[0]).hypot(ours[1] - theirs[1]) / scale);
     }
-    let angular = |state: &State| state.angular_momentum(domain, inertia);
+    let angular = |state: &ParticleState| state.angular_momentum(domain, inertia);
     if let (Some((ours, _)), Some((theirs, scale))) = (angular(state), angular(reference))
         && scale > 0.0
     {

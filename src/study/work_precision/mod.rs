@@ -19,20 +19,20 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-use dataset::{Configuration, Run, WorkPrecision};
+use dataset::{DiagramConfiguration, DiagramRun, WorkPrecision};
 pub(crate) use frames::made;
 
-use super::choice::Choice;
-use super::runs::Runs;
-use super::trial::Trial;
+use super::choice::SettingChoice;
+use super::runs::StudyRuns;
+use super::trial::TrialControl;
 use super::{StudyError, Subject};
 use crate::model::machine::MachineModel;
-use crate::results::{Journal, Meter, Progress};
+use crate::results::{Journal, Progress, ProgressMeter};
 use crate::statistics::median;
 use collision::collision;
-use encounters::{Encounters, encounters};
-use engine::{Planned, configurations};
-use growth::{EndedBy, Growth, growth};
+use encounters::{ParticleEvents, encounters};
+use engine::{PlannedDiagram, configurations};
+use growth::{DisturbanceGrowth, EndedBy, growth};
 use plan::{COARSEST, plan};
 use stripmine_physics::number::significant;
 
@@ -49,7 +49,7 @@ const TRIED: usize = 8;
 
 /// Extent of a diagram.
 #[derive(Clone, Debug)]
-pub(crate) struct Effort {
+pub(crate) struct DiagramEffort {
     /// Available seconds, approximately.
     pub budget: f64,
     /// Timed runs of each configuration and step.
@@ -67,8 +67,8 @@ pub(crate) struct Effort {
 /// recorded.
 pub(crate) fn work_precision(
     subject: &Subject,
-    effort: &Effort,
-    trial: Trial<'_>,
+    effort: &DiagramEffort,
+    trial: TrialControl<'_>,
     journal: &Journal,
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
@@ -79,14 +79,14 @@ pub(crate) fn work_precision(
         ));
     }
     let begun = trial.watch.now();
-    let meter = Meter::new(effort.budget, progress);
-    let runs = &Runs { subject, trial, journal, meter: &meter };
-    let choices = Choice::all(subject.entry.axes);
+    let meter = ProgressMeter::new(effort.budget, progress);
+    let runs = &StudyRuns { subject, trial, journal, meter: &meter };
+    let choices = SettingChoice::all(subject.entry.axes);
     let configurations = journal.once(|| configurations(runs, &choices))?;
     let rates: Vec<Option<f64>> = configurations.iter().map(|it| it.each.as_ref().ok().copied()).collect();
     let all_rates = || rates.iter().flatten().copied();
     if all_rates().next().is_none() {
-        let failed = |it: &Configuration| Some((it.label.clone(), it.each.clone().err()?.why));
+        let failed = |it: &DiagramConfiguration| Some((it.label.clone(), it.each.clone().err()?.why));
         let tried = configurations.iter().filter_map(failed).take(TRIED).collect();
         return Err(StudyError::EveryRunFails { tried });
     }
@@ -97,7 +97,7 @@ pub(crate) fn work_precision(
     let growth = journal.once(|| growth(runs, most, own_rate))?;
     let comparable = (growth.window / subject.step).round() as u64;
     let plan = plan(&choices, &rates, &subject.own, comparable, effort.budget, effort.repeats);
-    let planned = Planned { runs, effort, choices: &choices, rates: &rates, plan: &plan };
+    let planned = PlannedDiagram { runs, effort, choices: &choices, rates: &rates, plan: &plan };
     meter.expect(plan.seconds);
     let duration = planned.duration();
     let encounters = journal.once(|| encounters(runs, growth.step, duration, own_rate))?;
@@ -105,7 +105,7 @@ pub(crate) fn work_precision(
     let (reference, state) = planned.reference(own_rate)?;
     let mut all = planned.all(&reference, &state)?;
     if all.iter().all(|run| run.outcome.is_err()) {
-        let failed = |run: &Run| {
+        let failed = |run: &DiagramRun| {
             let label = choices[run.configuration].label();
             let why = run.outcome.as_ref().err()?.why.clone();
             Some((format!("{label}, step {}", significant(run.step, 6)), why))
@@ -146,8 +146,8 @@ fn parted(subject: &Subject, why: String) -> StudyError {
 /// [`StudyError::NoTrajectories`] where more time would not help, because trajectories diverge at once.
 fn undecided(
     subject: &Subject,
-    growth: &Growth,
-    encounters: &Encounters,
+    growth: &DisturbanceGrowth,
+    encounters: &ParticleEvents,
     duration: f64,
 ) -> Result<Option<String>, StudyError> {
     let whole = subject.duration();

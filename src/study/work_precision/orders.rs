@@ -11,7 +11,7 @@ const LEAST: usize = 3;
 
 /// Fitted order of convergence.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Fitted {
+pub(crate) struct FittedOrder {
     pub order: f64,
     /// Smallest and largest step of the fit (time).
     pub range: [f64; 2],
@@ -21,7 +21,7 @@ pub(crate) struct Fitted {
 
 /// Fits a power law to errors over steps, by rising step. Errors below `floor` belong to the reference, and errors above `ceiling` are outside the
 /// range of convergence; both are ignored. None for fewer than three points.
-pub(crate) fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<Fitted> {
+pub(crate) fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<FittedOrder> {
     let in_range = errors.iter().filter(|(_, error)| *error > floor.max(ROUNDING) && *error < ceiling);
     let used: Vec<(f64, f64)> = in_range.copied().take(MOST).collect();
     if used.len() < LEAST {
@@ -29,7 +29,7 @@ pub(crate) fn fit(errors: &[(f64, f64)], floor: f64, ceiling: f64) -> Option<Fit
     }
     let (steps, logarithms): (Vec<f64>, Vec<f64>) =
         used.iter().map(|(step, error)| (libm::log(*step), libm::log(*error))).unzip();
-    Some(Fitted {
+    Some(FittedOrder {
         order: slope(&steps, &logarithms),
         range: [used[0].0, used[used.len() - 1].0],
         points: used.len(),

@@ -1,7 +1,7 @@
 //! Selection of the runs of a diagram that fit into the available time.
 
-use crate::study::choice::Choice;
-use stripmine_physics::method::Decides;
+use crate::study::choice::SettingChoice;
+use stripmine_physics::method::ChoiceEffect;
 
 /// Largest step: this power of two times the scene's own.
 pub(crate) const COARSEST: i32 = 4;
@@ -12,7 +12,7 @@ const SHARE: f64 = 0.6;
 
 /// Selection of configurations and steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Scope {
+struct DiagramScope {
     /// True if configurations that differ in cost alone are run in every scheme and precision.
     every_cost: bool,
     /// True if every scheme is run in every precision.
@@ -22,19 +22,19 @@ struct Scope {
 }
 
 /// Scopes from the largest to the smallest.
-const SCOPES: [Scope; 6] = [
-    Scope { every_cost: true, every_precision: true, finest: 4 },
-    Scope { every_cost: false, every_precision: true, finest: 4 },
-    Scope { every_cost: false, every_precision: true, finest: 3 },
-    Scope { every_cost: false, every_precision: true, finest: 2 },
-    Scope { every_cost: false, every_precision: false, finest: 2 },
+const SCOPES: [DiagramScope; 6] = [
+    DiagramScope { every_cost: true, every_precision: true, finest: 4 },
+    DiagramScope { every_cost: false, every_precision: true, finest: 4 },
+    DiagramScope { every_cost: false, every_precision: true, finest: 3 },
+    DiagramScope { every_cost: false, every_precision: true, finest: 2 },
+    DiagramScope { every_cost: false, every_precision: false, finest: 2 },
     SMALLEST,
 ];
-const SMALLEST: Scope = Scope { every_cost: false, every_precision: false, finest: 1 };
+const SMALLEST: DiagramScope = DiagramScope { every_cost: false, every_precision: false, finest: 1 };
 
 /// Runs of a diagram.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Plan {
+pub(crate) struct DiagramPlan {
     /// Length of the runs in steps of the scene's own, a multiple of the coarsest step.
     pub(crate) own_steps: u64,
     /// Smallest step: this power of two below the scene's own.
@@ -50,17 +50,17 @@ pub(crate) struct Plan {
 /// Plans the runs: `rates` are seconds of a step by index of the choice, none where it is refused; `own_steps` is the number of steps of the
 /// scene's own for which trajectories are comparable; `repeats` is the number of timed runs of each.
 pub(crate) fn plan(
-    choices: &[Choice],
+    choices: &[SettingChoice],
     rates: &[Option<f64>],
-    own: &Choice,
+    own: &SettingChoice,
     own_steps: u64,
     budget: f64,
     repeats: usize,
-) -> Plan {
+) -> DiagramPlan {
     let multiple = 1 << COARSEST;
     let own_rate = choices.iter().position(|choice| choice == own).and_then(|place| rates[place]);
     // Configurations, seconds for each step of the scene's own, and the steps that fit.
-    let sized = |scope: Scope| {
+    let sized = |scope: DiagramScope| {
         let is_meant = |place: &usize| rates[*place].is_some() && is_run(&choices[*place], own, scope);
         let places: Vec<usize> = (0..choices.len()).filter(is_meant).collect();
         let ladder: f64 = (-scope.finest..=COARSEST).map(|power| 0.5f64.powi(power)).sum();
@@ -69,7 +69,7 @@ pub(crate) fn plan(
         let each = runs * ladder + reference;
         (places, each, (SHARE * budget / each.max(1e-12)) as u64)
     };
-    let is_whole = |scope: &Scope| sized(*scope).2 >= own_steps;
+    let is_whole = |scope: &DiagramScope| sized(*scope).2 >= own_steps;
     let scope = SCOPES.into_iter().find(is_whole).unwrap_or(SMALLEST);
     let (places, each, affordable) = sized(scope);
     let steps = (own_steps.min(affordable) / multiple * multiple).max(multiple);
@@ -91,15 +91,21 @@ pub(crate) fn plan(
             "the time after {steps} of the {own_steps} own steps for which trajectories are comparable"
         ));
     }
-    Plan { own_steps: steps, finest: scope.finest, choices: places, seconds: each * steps as f64, left_out }
+    DiagramPlan {
+        own_steps: steps,
+        finest: scope.finest,
+        choices: places,
+        seconds: each * steps as f64,
+        left_out,
+    }
 }
 
-fn is_run(choice: &Choice, own: &Choice, scope: Scope) -> bool {
+fn is_run(choice: &SettingChoice, own: &SettingChoice, scope: DiagramScope) -> bool {
     let same = |decides| choice.agrees(own, decides);
-    let [order, digits, cost] = [Decides::Order, Decides::Digits, Decides::Cost].map(same);
+    let [order, digits, cost] = [ChoiceEffect::Order, ChoiceEffect::Digits, ChoiceEffect::Cost].map(same);
     match scope {
-        Scope { every_cost: true, .. } => true,
-        Scope { every_precision: true, .. } => cost || order && digits,
+        DiagramScope { every_cost: true, .. } => true,
+        DiagramScope { every_precision: true, .. } => cost || order && digits,
         // At most one setting differs.
         _ => [order, digits, cost].into_iter().filter(|same| !same).count() < 2,
     }
@@ -113,7 +119,7 @@ mod tests {
     #[test]
     fn smaller_budget_omits_more_and_reports_it() {
         let axes = METHODS[0].axes;
-        let choices = Choice::all(axes);
+        let choices = SettingChoice::all(axes);
         let own = choices[0].clone();
         let mut rates = vec![Some(1e-6); choices.len()];
         rates[1] = None;

@@ -1,10 +1,10 @@
 //! Points of the charts, as frames.
 
-use super::dataset::{Configuration, Run, Scenes, WorkPrecision};
+use super::dataset::{DiagramConfiguration, DiagramRun, NamedDiagrams, WorkPrecision};
 use super::front::front;
 use super::growth::COMPARABLE;
 use super::measures::Measure;
-use crate::frame::{Frame, Rows};
+use crate::frame::{FrameBuilder, ResultFrame};
 use crate::statistics::median;
 
 /// Height of failed runs, relative to the largest error drawn.
@@ -12,10 +12,10 @@ const ABOVE: f64 = 10.0;
 /// Configurations with their own name in a chart; all others share one style.
 const NAMED: usize = 4;
 /// A point of a chart of error over cost: chart, kind of series, name of the series, cost and error.
-type Drawn = (&'static str, &'static str, String, f64, f64);
+type ChartPoint = (&'static str, &'static str, String, f64, f64);
 
 /// Points of the charts of error over cost.
-pub(super) fn drawn(scenes: &Scenes) -> Frame {
+pub(super) fn drawn(scenes: &NamedDiagrams) -> ResultFrame {
     let all = scenes.iter().flat_map(|(name, data)| {
         let mut points = vec![];
         for (chart, measure) in [("position", Measure::Position), ("energy", Measure::Energy)] {
@@ -25,7 +25,7 @@ pub(super) fn drawn(scenes: &Scenes) -> Frame {
         for (at, configuration) in data.configurations.iter().enumerate() {
             let own = || data.runs.iter().filter(move |run| run.configuration == at);
             if configuration.is_own_arithmetic {
-                let points = points_of(own(), Measure::Position, Run::cost);
+                let points = points_of(own(), Measure::Position, DiagramRun::cost);
                 searches.extend(points.map(|it| (configuration.cost.clone(), it)));
             }
             let points = points_of(own(), Measure::Position, |run| run.outcome.as_ref().ok()?.clocks);
@@ -42,7 +42,7 @@ pub(super) fn drawn(scenes: &Scenes) -> Frame {
         }
         points.into_iter().map(move |point| (name, point))
     });
-    Rows::of(all)
+    FrameBuilder::of(all)
         .text("scene", |(name, _)| *name)
         .text("chart", |(_, (chart, ..))| *chart)
         .text("kind", |(_, (_, kind, ..))| *kind)
@@ -54,9 +54,9 @@ pub(super) fn drawn(scenes: &Scenes) -> Frame {
 
 /// Cost and error of runs that finished, by rising cost.
 fn points_of<'d>(
-    runs: impl Iterator<Item = &'d Run>,
+    runs: impl Iterator<Item = &'d DiagramRun>,
     measure: Measure,
-    cost: impl Fn(&Run) -> Option<f64>,
+    cost: impl Fn(&DiagramRun) -> Option<f64>,
 ) -> impl Iterator<Item = (f64, f64)> {
     let points = runs.filter_map(|run| Some((cost(run)?, run.error(measure)?)));
     let mut points: Vec<_> = points.filter(|(_, error)| *error > 0.0).collect();
@@ -66,16 +66,16 @@ fn points_of<'d>(
 
 /// Error over cost of every scheme and precision with the scene's own search and execution. Errors below that of the reference are omitted.
 /// The scene's own configuration has a name, then those of the front, then the most accurate.
-fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<Drawn> {
+fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<ChartPoint> {
     let floor = data.reference.floor.get(&measure).copied().unwrap_or(0.0);
     let shown = || data.runs.iter().filter(|run| data.of(run).is_primary);
     let known = |(_, error): &(f64, f64)| *error >= floor;
     let sound: Vec<_> =
-        points_of(shown().filter(|run| run.is_sound()), measure, Run::cost).filter(known).collect();
+        points_of(shown().filter(|run| run.is_sound()), measure, DiagramRun::cost).filter(known).collect();
     let best: Vec<(f64, f64)> = front(&sound).into_iter().map(|place| sound[place]).collect();
-    let of_configuration = |(at, it): (usize, &'_ Configuration)| {
+    let of_configuration = |(at, it): (usize, &'_ DiagramConfiguration)| {
         let own = data.runs.iter().filter(|run| run.configuration == at);
-        let points: Vec<_> = points_of(own, measure, Run::cost).filter(known).collect();
+        let points: Vec<_> = points_of(own, measure, DiagramRun::cost).filter(known).collect();
         let name = format!("{} {}", it.scheme, it.digits);
         if it.label == data.own {
             (0, format!("{name} (the scene's own)"), points)
@@ -91,7 +91,7 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<D
         a_own.cmp(b_own).then(on_front(b).cmp(&on_front(a))).then(least(a).total_cmp(&least(b)))
     });
     let highest = all.iter().flat_map(|(.., points)| points).map(|point| point.1).fold(0.0, f64::max);
-    let mut drawn: Vec<Drawn> = vec![];
+    let mut drawn: Vec<ChartPoint> = vec![];
     for (place, (_, name, points)) in all.into_iter().enumerate() {
         let (kind, name) =
             if place < NAMED { ("configuration", name) } else { ("others", "others".to_owned()) };
@@ -100,7 +100,7 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<D
     drawn.extend(
         best.into_iter().map(|(cost, error)| (chart, "front", "Pareto front".to_owned(), cost, error)),
     );
-    let warned = points_of(shown().filter(|run| !run.is_sound()), measure, Run::cost).filter(known);
+    let warned = points_of(shown().filter(|run| !run.is_sound()), measure, DiagramRun::cost).filter(known);
     drawn.extend(warned.map(|(cost, error)| (chart, "warned", "warned of".to_owned(), cost, error)));
     let broken = shown().filter(|run| run.outcome.is_err() && highest > 0.0);
     let broken = broken.filter_map(|run| Some(data.of(run).each.as_ref().ok()? / run.step));
@@ -117,7 +117,7 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<D
 }
 
 /// Distances of a disturbed start and of half the step over time.
-pub(super) fn growth(scenes: &Scenes) -> Frame {
+pub(super) fn growth(scenes: &NamedDiagrams) -> ResultFrame {
     let all = scenes.iter().flat_map(|(name, data)| {
         let disturbed = format!("start disturbed by 1e-9 {}", data.unit);
         let grown = [(disturbed, &data.growth.separation), ("half the step".to_owned(), &data.growth.error)];
@@ -126,7 +126,7 @@ pub(super) fn growth(scenes: &Scenes) -> Frame {
             points.map(move |(time, distance)| (name, series.clone(), *time, *distance))
         })
     });
-    Rows::of(all)
+    FrameBuilder::of(all)
         .text("scene", |(name, ..)| *name)
         .text("series", |(_, series, ..)| series.clone())
         .number("time", 6, |(.., time, _)| *time)
@@ -135,7 +135,7 @@ pub(super) fn growth(scenes: &Scenes) -> Frame {
 }
 
 /// Errors of the outcomes of a collision by step, with the processor time of a step.
-pub(super) fn outcomes(scenes: &Scenes) -> Frame {
+pub(super) fn outcomes(scenes: &NamedDiagrams) -> ResultFrame {
     let of_a_step = |data: &WorkPrecision, label: &str| {
         let own = data.runs.iter().filter(|run| data.of(run).label == label);
         let all: Vec<f64> = own.filter_map(|run| Some(run.cost()? * run.step)).collect();
@@ -146,7 +146,7 @@ pub(super) fn outcomes(scenes: &Scenes) -> Frame {
         let each = collisions.map(move |it| (data.scheme(&it.choice), it, of_a_step(data, &it.choice)));
         each.map(move |it| (name, it))
     });
-    Rows::of(all)
+    FrameBuilder::of(all)
         .text("scene", |(name, _)| *name)
         .text("integrator", |(_, (scheme, ..))| *scheme)
         .number("step", 6, |(_, (_, it, _))| it.step)

@@ -1,16 +1,16 @@
 //! Diagrams on a synthetic clock: no result depends on the speed of the machine.
 
-use super::{Effort, made, work_precision};
+use super::{DiagramEffort, made, work_precision};
 use crate::model::machines;
-use crate::results::{Identity, Journal};
-use crate::study::explain::Target;
-use crate::study::trial::{Stopwatch, Trial};
+use crate::results::{Journal, JournalIdentity};
+use crate::study::explain::PlanTarget;
+use crate::study::trial::{Stopwatch, TrialControl};
 use crate::study::{StudyError, Subject};
 use serde_json::Value;
 use std::fs;
 use std::sync::atomic::{AtomicBool, Ordering};
 use stripmine_physics::method::METHODS;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 
 /// Nanoseconds per particle and step.
 const NANOSECONDS: f64 = 20_000.0;
@@ -28,14 +28,14 @@ fn written(text: &str, sets: &[&str]) -> Subject {
     subject(path.to_str().unwrap(), sets)
 }
 
-fn effort(budget: f64) -> Effort {
-    Effort { budget, repeats: 1, phases: 16, machine: None }
+fn effort(budget: f64) -> DiagramEffort {
+    DiagramEffort { budget, repeats: 1, phases: 16, machine: None }
 }
 
 /// Measured frames by name.
-fn measured(subject: &Subject, effort: &Effort) -> Result<Value, StudyError> {
+fn measured(subject: &Subject, effort: &DiagramEffort) -> Result<Value, StudyError> {
     let (watch, stop) = (Stopwatch::made(NANOSECONDS), AtomicBool::new(false));
-    let trial = Trial { watch: &watch, stop: &stop };
+    let trial = TrialControl { watch: &watch, stop: &stop };
     let data = work_precision(subject, effort, trial, &Journal::none(), &|_| {})?;
     Ok(made(&[("scene".to_owned(), data)]).json())
 }
@@ -78,7 +78,8 @@ fn smooth_forces_give_theoretical_orders() {
 fn collision_error_depends_on_step_phase() {
     let orders = |more: &[&str]| -> Vec<f64> {
         let sets = [&["run.time=2.6", "law.friction=0"], more].concat();
-        let data = measured(&subject("two-discs", &sets), &Effort { repeats: 0, ..effort(30.0) }).unwrap();
+        let data =
+            measured(&subject("two-discs", &sets), &DiagramEffort { repeats: 0, ..effort(30.0) }).unwrap();
         let own = rows(&data, "collision").iter().filter(|order| order["outcome"] == "restitution");
         own.map(|it| it["order_of_the_rms"].as_f64().unwrap()).collect()
     };
@@ -93,7 +94,7 @@ fn collision_error_depends_on_step_phase() {
 #[test]
 fn clock_periods_are_those_of_programs() {
     let machine = Some(machines::find("cray-1").unwrap());
-    let data = measured(&written(PRESSED, &[]), &Effort { machine, ..effort(2.0) }).unwrap();
+    let data = measured(&written(PRESSED, &[]), &DiagramEffort { machine, ..effort(2.0) }).unwrap();
     assert!(data["scenes"][0]["machine"].as_str().is_some_and(|name| name.contains("CRAY-1")));
     for run in rows(&data, "runs").iter().filter(|run| run["failed"].is_null()) {
         let (label, clocks) = (run["configuration"].as_str().unwrap(), run["clock_periods"].as_f64());
@@ -161,12 +162,12 @@ fn diverging_trajectories_are_refused() {
         let error = measured(&subject(scene, &[]), &effort(2000.0)).err().unwrap();
         let said = error.to_string();
         assert!(
-            matches!(error, StudyError::NoTrajectories { .. }) && error.class() == Class::Usage,
+            matches!(error, StudyError::NoTrajectories { .. }) && error.class() == ErrorClass::Usage,
             "{said}"
         );
         assert!(said.contains(why), "{said}");
         assert!(said.contains(&format!("stripmine chart accuracy {scene} --of temperature")), "{said}");
-        assert!(Target::of(&subject(scene, &[]), Some("temperature"), None).is_ok());
+        assert!(PlanTarget::of(&subject(scene, &[]), Some("temperature"), None).is_ok());
     }
 }
 
@@ -238,13 +239,13 @@ fn ties_go_to_the_scene_s_own_configuration() {
 #[test]
 fn an_interrupted_study_resumes() {
     let folder = tempfile::tempdir().unwrap();
-    let identity = Identity { of: "pressed".to_owned(), digest: "12345678".to_owned() };
+    let identity = JournalIdentity { of: "pressed".to_owned(), digest: "12345678".to_owned() };
     let subject = written(PRESSED, &[]);
     let run = |stop: &AtomicBool, until: f64| {
         let watch = Stopwatch::made(NANOSECONDS);
         let journal = Journal::open(folder.path(), &identity, None).unwrap();
         let progress = |share: f64| stop.fetch_or(share > until, Ordering::Relaxed);
-        let trial = Trial { watch: &watch, stop };
+        let trial = TrialControl { watch: &watch, stop };
         let data = work_precision(&subject, &effort(2.0), trial, &journal, &|share| _ = progress(share));
         (journal.len(), data.map(|data| made(&[("scene".to_owned(), data)]).json()))
     };

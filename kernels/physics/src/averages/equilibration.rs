@@ -47,7 +47,7 @@ pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
 fn least_error(series: &[f64]) -> usize {
     let (length, means) = batches(series);
     let mut best = (f64::INFINITY, 0);
-    let mut squares = Squares::default();
+    let mut squares = RunningVariance::default();
     for (at, value) in means.iter().enumerate().rev() {
         squares.add(*value);
         let error = squares.variance() / squares.count;
@@ -61,13 +61,13 @@ fn least_error(series: &[f64]) -> usize {
 
 /// Sums of squares about the mean, updated for each value (Welford, Technometrics 4, 419 (1962)).
 #[derive(Default)]
-struct Squares {
+struct RunningVariance {
     count: f64,
     mean: f64,
     sum: f64,
 }
 
-impl Squares {
+impl RunningVariance {
     fn add(&mut self, value: f64) {
         self.count += 1.0;
         let off = value - self.mean;
@@ -102,7 +102,7 @@ pub(super) fn batches(series: &[f64]) -> (usize, Vec<f64>) {
 mod tests {
     use super::*;
     use crate::averages::noise::Noise;
-    use crate::averages::{Outcome, estimated};
+    use crate::averages::{AverageOutcome, estimated};
 
     /// A step of ten values, far above noise of known size: ten values are cut, and ten more.
     #[test]
@@ -143,7 +143,7 @@ mod tests {
         for duration in [30.0, 75.0, 150.0] {
             let decay: Vec<f64> = (0..200).map(|at| libm::exp(-f64::from(at) / duration)).collect();
             let outcome = estimated(&decay, 0.0, 1.0);
-            assert!(!matches!(outcome, Outcome::Mean(_)), "{duration}: {outcome:?}");
+            assert!(!matches!(outcome, AverageOutcome::Mean(_)), "{duration}: {outcome:?}");
         }
     }
 }

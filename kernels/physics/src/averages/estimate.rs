@@ -49,7 +49,7 @@ pub struct Estimate {
 /// Result of averaging a quantity over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "says", rename_all = "kebab-case")]
-pub enum Outcome {
+pub enum AverageOutcome {
     /// The quantity has a mean.
     Mean(Estimate),
     /// The quantity is NaN in some rows.
@@ -118,22 +118,20 @@ pub fn foreseeing(values: &[f64]) -> Option<[f64; 2]> {
 }
 
 /// Estimates the mean of a series of values `spacing` apart, the first at `from` + `spacing` (time).
-pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
-    let few = |independent_samples: f64, enough_at: f64, estimate: Option<Estimate>| Outcome::TooShort {
-        independent_samples,
-        enough_at,
-        estimate,
+pub fn estimated(series: &[f64], from: f64, spacing: f64) -> AverageOutcome {
+    let few = |independent_samples: f64, enough_at: f64, estimate: Option<Estimate>| {
+        AverageOutcome::TooShort { independent_samples, enough_at, estimate }
     };
     let (Some(&first), Some(&last)) = (series.first(), series.last()) else {
         return few(0.0, from + FEWEST_SAMPLES * spacing, None);
     };
     if !series.iter().all(|value| value.is_finite()) {
-        return Outcome::Undefined;
+        return AverageOutcome::Undefined;
     }
     let largest = series.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let [low, high] = ends(series);
     if series.len() > 1 && high - low <= ROUNDING * largest {
-        return Outcome::Constant { mean: last };
+        return AverageOutcome::Constant { mean: last };
     }
     let n = series.len() as f64;
     if n < FEWEST_SAMPLES {
@@ -146,7 +144,7 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
     let estimate = Estimate::of(&error, kept, from + start as f64 * spacing, spacing);
     if cut.is_none() || estimate.independent_samples < FEWEST_SAMPLES {
         if is_smooth_drift(&series[series.len() / 2..], DRIFT) {
-            return Outcome::Changing { first, last };
+            return AverageOutcome::Changing { first, last };
         }
         let samples = estimate.independent_samples.min(FEWEST_SAMPLES - 1.0);
         let seeming = error.seeming.min(PER_CARRIER * carriers(kept)).max(1.0);
@@ -155,9 +153,9 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> Outcome {
         return few(samples, enough_at, cut.map(|_| estimate));
     }
     if error.drifts(if start > 0 { DRIFT_AFTER_TRANSIENT } else { DRIFT }) {
-        return Outcome::Changing { first, last };
+        return AverageOutcome::Changing { first, last };
     }
-    Outcome::Mean(estimate)
+    AverageOutcome::Mean(estimate)
 }
 
 impl Estimate {
@@ -246,7 +244,7 @@ mod tests {
         for (name, series, truth, least) in SERIES {
             let means: Vec<bool> = (0..SEEDS)
                 .filter_map(|seed| match estimated(&series(seed), 0.0, 1.0) {
-                    Outcome::Mean(estimate) => Some((estimate.mean - truth).abs() <= estimate.bar),
+                    AverageOutcome::Mean(estimate) => Some((estimate.mean - truth).abs() <= estimate.bar),
                     _ => None,
                 })
                 .collect();
@@ -267,8 +265,8 @@ mod tests {
             let [mut means, mut changing] = [0; 2];
             for outcome in outcomes {
                 match outcome {
-                    Outcome::Mean(_) => means += 1,
-                    Outcome::Changing { .. } => changing += 1,
+                    AverageOutcome::Mean(_) => means += 1,
+                    AverageOutcome::Changing { .. } => changing += 1,
                     _ => {}
                 }
             }
@@ -284,7 +282,7 @@ mod tests {
             (0..400_u64).map(|at| f64::from(u8::from(at % (400 / count) == 57 % (400 / count)))).collect()
         };
         for count in [1, 2, 4] {
-            let Outcome::TooShort { independent_samples, enough_at, .. } =
+            let AverageOutcome::TooShort { independent_samples, enough_at, .. } =
                 estimated(&series(count), 0.0, 1.0)
             else {
                 panic!("{count} events have a mean");
@@ -329,7 +327,7 @@ mod tests {
                     .map(|(a, b)| 0.3_f64.sqrt() * a + 0.7_f64.sqrt() * b)
             };
             let outcomes = (0..400).map(|seed| estimated(&series(seed).collect::<Vec<_>>(), 0.0, 1.0));
-            let means = outcomes.filter(|outcome| matches!(outcome, Outcome::Mean(_))).count();
+            let means = outcomes.filter(|outcome| matches!(outcome, AverageOutcome::Mean(_))).count();
             println!("{slow_samples} slow samples: {means} of 400 have a mean");
             assert!(share(means, 400) <= most, "{slow_samples}: {means}");
         }
@@ -341,7 +339,7 @@ mod tests {
         for memory in [0.0, 0.5, 0.9] {
             let cuts = (0..1000).filter(|&seed| {
                 matches!(estimated(&Noise::new(seed).series(1000, memory), 0.0, 1.0),
-                    Outcome::Mean(estimate) if estimate.equilibrated_at > 0.0)
+                    AverageOutcome::Mean(estimate) if estimate.equilibrated_at > 0.0)
             });
             let cuts = cuts.count();
             println!("memory {memory}: {cuts} of 1000 are cut");
@@ -360,22 +358,22 @@ mod tests {
     #[test]
     fn outcomes_without_mean_are_distinguished() {
         let line: Vec<f64> = (0..500).map(f64::from).collect();
-        assert_eq!(estimated(&line, 0.0, 1.0), Outcome::Changing { first: 0.0, last: 499.0 });
+        assert_eq!(estimated(&line, 0.0, 1.0), AverageOutcome::Changing { first: 0.0, last: 499.0 });
         let cooling: Vec<f64> = (0..100).map(|at| (1.0 + f64::from(at)).powi(-2)).collect();
-        assert!(matches!(estimated(&cooling, 0.0, 1.0), Outcome::Changing { .. }));
-        assert_eq!(estimated(&[2.5; 40], 0.0, 1.0), Outcome::Constant { mean: 2.5 });
+        assert!(matches!(estimated(&cooling, 0.0, 1.0), AverageOutcome::Changing { .. }));
+        assert_eq!(estimated(&[2.5; 40], 0.0, 1.0), AverageOutcome::Constant { mean: 2.5 });
         let rounded: Vec<f64> = (0..40).map(|at| 2.5 + 1e-14 * f64::from(at)).collect();
-        assert!(matches!(estimated(&rounded, 0.0, 1.0), Outcome::Constant { .. }));
+        assert!(matches!(estimated(&rounded, 0.0, 1.0), AverageOutcome::Constant { .. }));
         let mut undefined = vec![2.5; 40];
         undefined[7] = f64::NAN;
-        assert_eq!(estimated(&undefined, 0.0, 1.0), Outcome::Undefined);
-        let few = Outcome::TooShort { independent_samples: 3.0, enough_at: 12.0, estimate: None };
+        assert_eq!(estimated(&undefined, 0.0, 1.0), AverageOutcome::Undefined);
+        let few = AverageOutcome::TooShort { independent_samples: 3.0, enough_at: 12.0, estimate: None };
         assert_eq!(estimated(&[1.0, 2.0, 1.0], 2.0, 0.5), few);
         // For a correlation time comparable to the run, the predicted length has the right order of magnitude.
         let slow = (0..20).map(|seed| estimated(&Noise::new(seed).series(400, 0.97), 0.0, 1.0));
         let short: Vec<f64> = slow
             .filter_map(|outcome| match outcome {
-                Outcome::TooShort { enough_at, .. } => Some(enough_at),
+                AverageOutcome::TooShort { enough_at, .. } => Some(enough_at),
                 _ => None,
             })
             .collect();

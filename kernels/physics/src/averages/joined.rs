@@ -1,7 +1,7 @@
 //! Joined averages of several runs of one scene.
 
-use super::estimate::{Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, Outcome, bar};
-use super::{Average, Averages, BAR};
+use super::estimate::{AverageOutcome, Estimate, FEWEST_SAMPLES, LIKELY_ENOUGH, bar};
+use super::{Average, BAR, RunAverages};
 
 /// Relative difference below which numbers count as equal.
 const SAME: f64 = 1e-9;
@@ -20,12 +20,13 @@ const CHANCE: f64 = 3.0;
 /// degrees of freedom. Runs that differ in no conserved number are of one ensemble and are weighted by their time. Four or more have the error of
 /// their spread. Two or three have the errors of each; if they differ by more than statistical error, the error is multiplied by √(χ²/(R − 1))
 /// (Birge, Phys. Rev. 40, 207 (1932)). If most runs are too short for a mean, their transients are unknown, and the join is too short as well.
-pub fn joined(runs: &[Averages]) -> Averages {
+pub fn joined(runs: &[RunAverages]) -> RunAverages {
     let Some(first) = runs.first() else {
-        return Averages { bar: BAR, rows: 0, span: 0.0, runs: 0, quantities: vec![] };
+        return RunAverages { bar: BAR, rows: 0, span: 0.0, runs: 0, quantities: vec![] };
     };
-    let outcomes =
-        |place: usize| -> Vec<Outcome> { runs.iter().map(|run| run.quantities[place].outcome).collect() };
+    let outcomes = |place: usize| -> Vec<AverageOutcome> {
+        runs.iter().map(|run| run.quantities[place].outcome).collect()
+    };
     let spans: Vec<f64> = runs.iter().map(|run| run.span).collect();
     let is_one_ensemble = !(0..first.quantities.len()).any(|place| differ_for_good(&outcomes(place)));
     let quantities = first.quantities.iter().enumerate().map(|(place, average)| {
@@ -33,14 +34,20 @@ pub fn joined(runs: &[Averages]) -> Averages {
         Average { outcome, ..average.clone() }
     });
     let rows = runs.iter().map(|run| run.rows).sum();
-    Averages { bar: BAR, rows, span: spans.iter().sum(), runs: runs.len(), quantities: quantities.collect() }
+    RunAverages {
+        bar: BAR,
+        rows,
+        span: spans.iter().sum(),
+        runs: runs.len(),
+        quantities: quantities.collect(),
+    }
 }
 
 /// Tests if every run conserves the quantity and runs differ in it.
-fn differ_for_good(outcomes: &[Outcome]) -> bool {
+fn differ_for_good(outcomes: &[AverageOutcome]) -> bool {
     let conserved = outcomes.iter().map(|outcome| match *outcome {
-        Outcome::Constant { mean } => Some((mean, 0.0)),
-        Outcome::Kept { first, farthest, .. } => Some((first, farthest)),
+        AverageOutcome::Constant { mean } => Some((mean, 0.0)),
+        AverageOutcome::Kept { first, farthest, .. } => Some((first, farthest)),
         _ => None,
     });
     let Some(conserved) = conserved.collect::<Option<Vec<(f64, f64)>>>() else { return false };
@@ -51,7 +58,7 @@ fn differ_for_good(outcomes: &[Outcome]) -> bool {
     apart > SAME * largest && farthest < CONSERVED * apart
 }
 
-fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) -> Outcome {
+fn joined_outcome(outcomes: &[AverageOutcome], spans: &[f64], is_one_ensemble: bool) -> AverageOutcome {
     if let [only] = outcomes {
         return *only;
     }
@@ -59,9 +66,11 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
         return outcome;
     }
     // Mean of each run with its time; a constant has no samples.
-    let of_run = |(outcome, span): (&Outcome, &f64)| match *outcome {
-        Outcome::Mean(it) | Outcome::TooShort { estimate: Some(it), .. } => (it.mean, it.span, Some(it)),
-        Outcome::Constant { mean } => (mean, *span, None),
+    let of_run = |(outcome, span): (&AverageOutcome, &f64)| match *outcome {
+        AverageOutcome::Mean(it) | AverageOutcome::TooShort { estimate: Some(it), .. } => {
+            (it.mean, it.span, Some(it))
+        }
+        AverageOutcome::Constant { mean } => (mean, *span, None),
         _ => (f64::NAN, 0.0, None),
     };
     let parts: Vec<(f64, f64, Option<Estimate>)> = outcomes.iter().zip(spans).map(of_run).collect();
@@ -69,14 +78,14 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
     let estimates: Vec<Estimate> = parts.iter().filter_map(|part| part.2).collect();
     let largest = values.iter().fold(0.0_f64, |largest, [mean, _]| largest.max(mean.abs()));
     if estimates.is_empty() && values.iter().all(|[mean, _]| (mean - values[0][0]).abs() <= SAME * largest) {
-        return Outcome::Constant { mean: values[0][0] };
+        return AverageOutcome::Constant { mean: values[0][0] };
     }
     let short = outcomes.iter().filter_map(|outcome| match *outcome {
-        Outcome::TooShort { enough_at, .. } => Some(enough_at),
+        AverageOutcome::TooShort { enough_at, .. } => Some(enough_at),
         _ => None,
     });
     let short: Vec<f64> = short.collect();
-    let have_errors = outcomes.iter().all(|outcome| matches!(outcome, Outcome::Mean(_)));
+    let have_errors = outcomes.iter().all(|outcome| matches!(outcome, AverageOutcome::Mean(_)));
     // Runs of one ensemble are weighted by their time; runs that are single samples have equal weights.
     let by_time = is_one_ensemble && have_errors;
     let values: Vec<[f64; 2]> =
@@ -92,22 +101,22 @@ fn joined_outcome(outcomes: &[Outcome], spans: &[f64], is_one_ensemble: bool) ->
     if !estimates.is_empty() && independent_samples < FEWEST_SAMPLES {
         let longer = LIKELY_ENOUGH / independent_samples;
         let enough_at = estimate.equilibrated_at + longer * estimate.span / values.len() as f64;
-        return Outcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
+        return AverageOutcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
     }
     if 2 * short.len() > outcomes.len() {
         let enough_at = short.into_iter().fold(0.0, f64::max);
-        return Outcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
+        return AverageOutcome::TooShort { independent_samples, enough_at, estimate: Some(estimate) };
     }
-    Outcome::Mean(estimate)
+    AverageOutcome::Mean(estimate)
 }
 
 /// Outcome that prevents a joined mean, the gravest of all, so that it is independent of the order of the runs.
-fn obstacle(outcomes: &[Outcome]) -> Option<Outcome> {
-    let weight = |outcome: &Outcome| match *outcome {
-        Outcome::Undefined => Some([4.0, 0.0]),
-        Outcome::Kept { farthest, .. } => Some([3.0, farthest]),
-        Outcome::Changing { first, last } => Some([2.0, (last - first).abs()]),
-        Outcome::TooShort { enough_at, estimate: None, .. } => Some([1.0, enough_at]),
+fn obstacle(outcomes: &[AverageOutcome]) -> Option<AverageOutcome> {
+    let weight = |outcome: &AverageOutcome| match *outcome {
+        AverageOutcome::Undefined => Some([4.0, 0.0]),
+        AverageOutcome::Kept { farthest, .. } => Some([3.0, farthest]),
+        AverageOutcome::Changing { first, last } => Some([2.0, (last - first).abs()]),
+        AverageOutcome::TooShort { enough_at, estimate: None, .. } => Some([1.0, enough_at]),
         _ => None,
     };
     let gravest = outcomes.iter().copied().max_by(|a, b| {
@@ -182,14 +191,14 @@ mod tests {
     use crate::averages::estimated;
     use crate::averages::noise::Noise;
 
-    fn mean(outcome: Outcome) -> Estimate {
+    fn mean(outcome: AverageOutcome) -> Estimate {
         match outcome {
-            Outcome::Mean(estimate) => estimate,
+            AverageOutcome::Mean(estimate) => estimate,
             other => panic!("{other:?}"),
         }
     }
 
-    fn join(outcomes: &[Outcome], is_one_ensemble: bool) -> Outcome {
+    fn join(outcomes: &[AverageOutcome], is_one_ensemble: bool) -> AverageOutcome {
         joined_outcome(outcomes, &vec![1000.0; outcomes.len()], is_one_ensemble)
     }
 
@@ -205,7 +214,8 @@ mod tests {
                 });
                 runs.collect::<Vec<_>>()
             });
-            let with_means = held.filter(|runs| runs.iter().all(|run| matches!(run, Outcome::Mean(_))));
+            let with_means =
+                held.filter(|runs| runs.iter().all(|run| matches!(run, AverageOutcome::Mean(_))));
             let joined = with_means.map(|runs| mean(join(&runs, own == 0.0)));
             let held: Vec<bool> = joined.map(|joined| joined.mean.abs() <= joined.bar).collect();
             let share = held.iter().filter(|held| **held).count() as f64 / held.len() as f64;
@@ -218,13 +228,13 @@ mod tests {
     /// Hand calculation: 1 and 3 have the mean 2 and the standard error 1, with one degree of freedom.
     #[test]
     fn constants_of_runs_vary_between_runs() {
-        let of = |mean| Outcome::Constant { mean };
+        let of = |mean| AverageOutcome::Constant { mean };
         assert_eq!(join(&[of(1.5), of(1.5)], true), of(1.5));
         let estimate = mean(join(&[of(1.0), of(3.0)], true));
         assert_eq!((estimate.mean, estimate.standard_error, estimate.freedoms), (2.0, 1.0, 1.0));
-        let kept = |farthest| Outcome::Kept { first: 0.0, last: 0.0, farthest };
+        let kept = |farthest| AverageOutcome::Kept { first: 0.0, last: 0.0, farthest };
         assert_eq!(join(&[kept(1.0), kept(2.0)], true), kept(2.0));
-        let changing = Outcome::Changing { first: 0.0, last: 1.0 };
+        let changing = AverageOutcome::Changing { first: 0.0, last: 1.0 };
         assert_eq!(join(&[of(1.0), changing], true), changing);
     }
 
@@ -234,10 +244,10 @@ mod tests {
         let varying = [1, 2].map(|seed| estimated(&Noise::new(seed).series(1000, 0.5), 0.0, 1.0));
         let [a, b] = varying;
         let (still, short) =
-            (Outcome::Constant { mean: 0.0 }, estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0));
-        assert!(matches!(short, Outcome::TooShort { estimate: Some(_), .. }));
+            (AverageOutcome::Constant { mean: 0.0 }, estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0));
+        assert!(matches!(short, AverageOutcome::TooShort { estimate: Some(_), .. }));
         for third in [still, short] {
-            let joined = |order: [Outcome; 3]| mean(join(&order, true));
+            let joined = |order: [AverageOutcome; 3]| mean(join(&order, true));
             let first = joined([a, b, third]);
             assert_eq!(first.freedoms, 2.0);
             for order in [[third, a, b], [b, third, a], [b, a, third]] {
@@ -247,9 +257,9 @@ mod tests {
         }
         let expected = (mean(a).mean + mean(b).mean) / 3.0;
         assert!((mean(join(&[still, b, a], true)).mean - expected).abs() < 0.05);
-        assert!(matches!(join(&[still, short], true), Outcome::TooShort { .. }));
-        for gravest in [Outcome::Undefined, Outcome::Changing { first: 0.0, last: 9.0 }] {
-            let other = Outcome::Changing { first: 0.0, last: 1.0 };
+        assert!(matches!(join(&[still, short], true), AverageOutcome::TooShort { .. }));
+        for gravest in [AverageOutcome::Undefined, AverageOutcome::Changing { first: 0.0, last: 9.0 }] {
+            let other = AverageOutcome::Changing { first: 0.0, last: 1.0 };
             assert_eq!([join(&[a, other, gravest], true), join(&[gravest, other, a], true)], [gravest; 2]);
         }
     }
@@ -258,8 +268,10 @@ mod tests {
     /// their errors. Over times of 1, 1, 1, 3 the mean is 4, with an effective number of three runs.
     #[test]
     fn four_runs_have_the_error_of_their_spread() {
-        let Outcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else { panic!() };
-        let run = |mean, span| Outcome::Mean(Estimate { mean, span, ..some });
+        let AverageOutcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else {
+            panic!()
+        };
+        let run = |mean, span| AverageOutcome::Mean(Estimate { mean, span, ..some });
         let joined = mean(join(&[run(1.0, 9.0), run(2.0, 9.0), run(3.0, 9.0), run(6.0, 9.0)], true));
         assert!((joined.mean - 3.0).abs() < 1e-12 && (joined.freedoms - 3.0).abs() < 1e-12, "{joined:?}");
         assert!((joined.standard_error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12, "{joined:?}");
@@ -273,21 +285,29 @@ mod tests {
     fn joins_of_mostly_short_runs_are_too_short() {
         let long = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0);
         let short = estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0);
-        let Outcome::TooShort { enough_at, .. } = short else { panic!("{short:?}") };
-        assert!(matches!(join(&[long, short], true), Outcome::Mean(_)));
-        let Outcome::TooShort { enough_at: found, .. } = join(&[short, long, short], true) else { panic!() };
+        let AverageOutcome::TooShort { enough_at, .. } = short else { panic!("{short:?}") };
+        assert!(matches!(join(&[long, short], true), AverageOutcome::Mean(_)));
+        let AverageOutcome::TooShort { enough_at: found, .. } = join(&[short, long, short], true) else {
+            panic!()
+        };
         assert_eq!(found, enough_at);
     }
 
     /// Different energies make runs of a closed system independent samples; momenta that differ by rounding do not.
     #[test]
     fn different_conserved_numbers_are_detected() {
-        let kept = |first, farthest| Outcome::Kept { first, last: first, farthest };
-        assert!(differ_for_good(&[Outcome::Constant { mean: 51.4 }, Outcome::Constant { mean: 48.0 }]));
+        let kept = |first, farthest| AverageOutcome::Kept { first, last: first, farthest };
+        assert!(differ_for_good(&[
+            AverageOutcome::Constant { mean: 51.4 },
+            AverageOutcome::Constant { mean: 48.0 }
+        ]));
         assert!(differ_for_good(&[kept(0.3, 1e-12), kept(-0.2, 1e-12)]));
         assert!(!differ_for_good(&[kept(1e-17, 1e-13), kept(-2e-16, 1e-13)]));
         assert!(!differ_for_good(&[kept(0.3, 2.0), kept(-0.2, 3.0)]));
-        assert!(!differ_for_good(&[Outcome::Constant { mean: 0.0 }; 3]));
-        assert!(!differ_for_good(&[Outcome::Constant { mean: 0.0 }, estimated(&[1.0, 2.0], 0.0, 1.0)]));
+        assert!(!differ_for_good(&[AverageOutcome::Constant { mean: 0.0 }; 3]));
+        assert!(!differ_for_good(&[
+            AverageOutcome::Constant { mean: 0.0 },
+            estimated(&[1.0, 2.0], 0.0, 1.0)
+        ]));
     }
 }

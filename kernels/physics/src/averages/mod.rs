@@ -14,13 +14,15 @@ mod student;
 mod waves;
 mod words;
 
-pub use estimate::{Estimate, LIKELY_ENOUGH, Outcome, estimated, foreseeing, of_correlated, of_independent};
+pub use estimate::{
+    AverageOutcome, Estimate, LIKELY_ENOUGH, estimated, foreseeing, of_correlated, of_independent,
+};
 pub use joined::joined;
-pub use rows::Rows;
+pub use rows::AveragedRows;
 pub use student::{student, variance_ratio};
 pub use waves::MOST as MOST_WAVES;
 
-use crate::method::{Kind, Quantity};
+use crate::method::{ObservedQuantity, QuantityKind};
 use serde::Serialize;
 
 /// Definition of the error bars.
@@ -28,7 +30,7 @@ pub(crate) const BAR: &str = "half-width of the 95 % confidence interval, by Stu
 
 /// Averages of a run, or of several joined ones.
 #[derive(Clone, Debug, Serialize)]
-pub struct Averages {
+pub struct RunAverages {
     /// Definition of the error bars.
     pub bar: &'static str,
     /// Number of rows of `thermo.csv` used, the transient included.
@@ -52,28 +54,32 @@ pub struct Average {
     pub unit: String,
     /// Result.
     #[serde(flatten)]
-    pub outcome: Outcome,
+    pub outcome: AverageOutcome,
 }
 
-impl Averages {
+impl RunAverages {
     /// Averages over the rows of a run.
-    pub fn of(rows: &Rows) -> Averages {
+    pub fn of(rows: &AveragedRows) -> RunAverages {
         let places =
-            (0..rows.quantities().len()).filter(|&place| rows.quantities()[place].kind != Kind::Time);
+            (0..rows.quantities().len()).filter(|&place| rows.quantities()[place].kind != QuantityKind::Time);
         let quantities = places.map(|place| Average::of(rows, place)).collect();
-        Averages { bar: BAR, rows: rows.count(), span: rows.now() - rows.from(), runs: 1, quantities }
+        RunAverages { bar: BAR, rows: rows.count(), span: rows.now() - rows.from(), runs: 1, quantities }
     }
 }
 
 impl Average {
     /// Average of the quantity with an index among those observed.
-    pub fn of(rows: &Rows, place: usize) -> Average {
+    pub fn of(rows: &AveragedRows, place: usize) -> Average {
         let quantity = rows.quantities()[place];
         let outcome = match quantity.kind {
-            Kind::Kept => {
+            QuantityKind::Kept => {
                 let [first, last, farthest] = rows.kept(place);
                 let is_number = first.is_finite() && farthest.is_finite();
-                if is_number { Outcome::Kept { first, last, farthest } } else { Outcome::Undefined }
+                if is_number {
+                    AverageOutcome::Kept { first, last, farthest }
+                } else {
+                    AverageOutcome::Undefined
+                }
             }
             _ => estimated(&rows.series(place), rows.from(), rows.block_spacing()),
         };
@@ -81,20 +87,20 @@ impl Average {
     }
 }
 
-fn what(quantity: Quantity) -> &'static str {
+fn what(quantity: ObservedQuantity) -> &'static str {
     match quantity.kind {
-        Kind::Time | Kind::Instant => "values",
-        Kind::Counter => "rate",
-        Kind::Interval => "intervals",
-        Kind::Kept => "nothing",
+        QuantityKind::Time | QuantityKind::Instant => "values",
+        QuantityKind::Counter => "rate",
+        QuantityKind::Interval => "intervals",
+        QuantityKind::Kept => "nothing",
     }
 }
 
 /// Unit of an average; for counters that of the rate.
-fn unit(quantity: Quantity) -> String {
+fn unit(quantity: ObservedQuantity) -> String {
     match (quantity.kind, quantity.unit) {
-        (Kind::Counter, "") => "1/time".to_owned(),
-        (Kind::Counter, unit) => match unit.strip_suffix("/time") {
+        (QuantityKind::Counter, "") => "1/time".to_owned(),
+        (QuantityKind::Counter, unit) => match unit.strip_suffix("/time") {
             Some(unit) => format!("{unit}/time²"),
             None => format!("{unit}/time"),
         },

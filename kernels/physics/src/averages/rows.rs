@@ -1,6 +1,6 @@
 //! Rows of observables accumulated for averages, in bounded memory.
 
-use crate::method::{Kind, Quantity};
+use crate::method::{ObservedQuantity, QuantityKind};
 
 /// Largest number of blocks; beyond it, pairs of blocks are merged.
 const MOST_BLOCKS: usize = 2048;
@@ -13,8 +13,8 @@ const EVEN: f64 = 1e-3;
 /// number of rows in a block is doubled. A block has the mean of instantaneous and interval values over its rows, and the last value of counters.
 /// The same rows give the same blocks for any number of sessions.
 #[derive(Clone, Debug)]
-pub struct Rows {
-    quantities: &'static [Quantity],
+pub struct AveragedRows {
+    quantities: &'static [ObservedQuantity],
     time: usize,
     count: u64,
     base: Vec<f64>,
@@ -29,12 +29,12 @@ pub struct Rows {
     open: (u64, Vec<f64>),
 }
 
-impl Rows {
+impl AveragedRows {
     /// Empty rows of quantities, one of which is the time.
-    pub fn new(quantities: &'static [Quantity]) -> Rows {
-        Rows {
+    pub fn new(quantities: &'static [ObservedQuantity]) -> AveragedRows {
+        AveragedRows {
             quantities,
-            time: quantities.iter().position(|it| it.kind == Kind::Time).unwrap_or_default(),
+            time: quantities.iter().position(|it| it.kind == QuantityKind::Time).unwrap_or_default(),
             count: 0,
             base: vec![],
             last: vec![],
@@ -52,7 +52,7 @@ impl Rows {
     }
 
     /// Observed quantities.
-    pub fn quantities(&self) -> &'static [Quantity] {
+    pub fn quantities(&self) -> &'static [ObservedQuantity] {
         self.quantities
     }
 
@@ -171,16 +171,16 @@ impl Rows {
 mod tests {
     use super::*;
 
-    const fn quantity(name: &'static str, kind: Kind) -> Quantity {
-        Quantity { name, unit: "", kind, doc: "" }
+    const fn quantity(name: &'static str, kind: QuantityKind) -> ObservedQuantity {
+        ObservedQuantity { name, unit: "", kind, doc: "" }
     }
 
-    const QUANTITIES: &[Quantity] = &[
-        quantity("time", Kind::Time),
-        quantity("x", Kind::Instant),
-        quantity("count", Kind::Counter),
-        quantity("z", Kind::Interval),
-        quantity("energy", Kind::Kept),
+    const QUANTITIES: &[ObservedQuantity] = &[
+        quantity("time", QuantityKind::Time),
+        quantity("x", QuantityKind::Instant),
+        quantity("count", QuantityKind::Counter),
+        quantity("z", QuantityKind::Interval),
+        quantity("energy", QuantityKind::Kept),
     ];
 
     /// Row of a run with a sum, and with `sum` as a mean over the interval before it.
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn first_row_is_the_base_of_increments() {
-        let mut rows = Rows::new(QUANTITIES);
+        let mut rows = AveragedRows::new(QUANTITIES);
         // Hand calculation: increments 1, 3 and 2 within half a unit of time each, at x = 2.
         for (time, sum) in [(0.0, 0.0), (0.5, 1.0), (1.0, 4.0), (1.5, 6.0)] {
             rows.add(&row(time, 2.0, sum));
@@ -204,7 +204,7 @@ mod tests {
     /// Blocks of a long run are compared with all of its rows.
     #[test]
     fn blocks_of_a_long_run_are_means_of_its_rows() {
-        let mut rows = Rows::new(QUANTITIES);
+        let mut rows = AveragedRows::new(QUANTITIES);
         let x = |at: u32| 2.0 + f64::from(at * 7919 % 101);
         for at in 0..=10_000 {
             rows.add(&row(0.25 * f64::from(at), x(at), 5.0 * f64::from(at)));
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_new_spacing_discards_earlier_rows() {
-        let mut rows = Rows::new(QUANTITIES);
+        let mut rows = AveragedRows::new(QUANTITIES);
         for time in [0.0, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5] {
             rows.add(&row(time, time, 0.0));
         }

@@ -1,12 +1,12 @@
 //! Averages as text of a few lines.
 
-use super::{Average, Averages, Estimate, Outcome};
+use super::{Average, AverageOutcome, Estimate, RunAverages};
 use crate::number::{counted, significant, with_bar};
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// Formats a line for each mean, then the reasons why others have none. Zero rates and conserved quantities are omitted.
-impl fmt::Display for Averages {
+impl fmt::Display for RunAverages {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of_runs = if self.runs > 1 { format!(" over {} runs", self.runs) } else { String::new() };
         let mut is_first = true;
@@ -17,21 +17,21 @@ impl fmt::Display for Averages {
         for average in &self.quantities {
             let name = average.quantity;
             match &average.outcome {
-                Outcome::Mean(estimate) => {
+                AverageOutcome::Mean(estimate) => {
                     if std::mem::take(&mut is_first) {
                         writeln!(f, "means{of_runs}, ± 95 % (Student's t):")?;
                     }
                     writeln!(f, "  {}", line(average, estimate))?;
                 }
-                Outcome::Constant { mean } if *mean != 0.0 => {
+                AverageOutcome::Constant { mean } if *mean != 0.0 => {
                     constants.push(format!("{name} {}", significant(*mean, 6)));
                 }
-                Outcome::Changing { .. } => changing.push(name),
-                Outcome::Undefined => undefined.push(name),
-                Outcome::TooShort { enough_at, .. } => {
+                AverageOutcome::Changing { .. } => changing.push(name),
+                AverageOutcome::Undefined => undefined.push(name),
+                AverageOutcome::TooShort { enough_at, .. } => {
                     short.entry(significant(*enough_at, 2)).or_default().push(name);
                 }
-                Outcome::Constant { .. } | Outcome::Kept { .. } => {}
+                AverageOutcome::Constant { .. } | AverageOutcome::Kept { .. } => {}
             }
         }
         if !constants.is_empty() {

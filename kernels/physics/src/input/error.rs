@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Location in a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct Place {
+pub struct TextLocation {
     /// Line, from 1.
     pub line: u32,
     /// Column in characters, from 1.
@@ -17,7 +17,7 @@ pub struct Place {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
-pub enum Reason {
+pub enum MistakeKind {
     /// The scene cannot be found or read.
     Unreadable,
     /// Not TOML.
@@ -65,9 +65,9 @@ pub struct InputError {
     /// File, preset, or option of the command line.
     pub file: String,
     /// Location in the file, if there is one.
-    pub place: Option<Place>,
+    pub place: Option<TextLocation>,
     /// Kind.
-    pub reason: Reason,
+    pub reason: MistakeKind,
     /// Mistake in words, with the numbers.
     pub message: String,
     /// Expected value.
@@ -78,7 +78,7 @@ pub struct InputError {
 
 fn paragraph(error: &InputError) -> String {
     let mut text = quoted::quoted(&error.file);
-    if let Some(Place { line, column }) = error.place {
+    if let Some(TextLocation { line, column }) = error.place {
         text.push_str(&format!(":{line}:{column}"));
     }
     let [default_expected, default_advice] = error.reason.defaults();
@@ -101,38 +101,40 @@ fn paragraph(error: &InputError) -> String {
     text
 }
 
-impl Reason {
+impl MistakeKind {
     /// Expected value and advice of a mistake that states none of its own.
     fn defaults(self) -> [&'static str; 2] {
         match self {
-            Reason::Unreadable => [
+            MistakeKind::Unreadable => [
                 "a readable file or the name of a preset",
                 "check the path; `stripmine scene list` lists the presets",
             ],
-            Reason::Syntax => ["a TOML file in UTF-8", "correct the text at this location"],
-            Reason::System => ["a readable file", "check the path and its permissions"],
-            Reason::Format => {
+            MistakeKind::Syntax => ["a TOML file in UTF-8", "correct the text at this location"],
+            MistakeKind::System => ["a readable file", "check the path and its permissions"],
+            MistakeKind::Format => {
                 ["a format that this program reads", "convert the file, or use the version that wrote it"]
             }
-            Reason::Unknown => ["a known name", "correct the name, or remove the line"],
-            Reason::Type => ["a value of the right type", "change the value"],
-            Reason::Range => ["a value in the allowed range", "change the value"],
-            Reason::Missing => ["a value", "add the line"],
-            Reason::Unused => ["a key that has an effect", "remove the line"],
-            Reason::Contradiction => ["values that agree with each other", "change one of them"],
-            Reason::Override => ["section.key=value", "correct the option"],
-            Reason::StartFile => {
+            MistakeKind::Unknown => ["a known name", "correct the name, or remove the line"],
+            MistakeKind::Type => ["a value of the right type", "change the value"],
+            MistakeKind::Range => ["a value in the allowed range", "change the value"],
+            MistakeKind::Missing => ["a value", "add the line"],
+            MistakeKind::Unused => ["a key that has an effect", "remove the line"],
+            MistakeKind::Contradiction => ["values that agree with each other", "change one of them"],
+            MistakeKind::Override => ["section.key=value", "correct the option"],
+            MistakeKind::StartFile => {
                 ["a start file that can be read whole", "correct the start file, or name another one"]
             }
-            Reason::Placement => ["discs that find room", "place fewer or smaller discs, or enlarge the box"],
-            Reason::Overlap => ["discs that do not overlap", "move one of the discs"],
-            Reason::Outside => ["discs inside the box", "move the disc, or enlarge the box"],
-            Reason::Geometry => {
+            MistakeKind::Placement => {
+                ["discs that find room", "place fewer or smaller discs, or enlarge the box"]
+            }
+            MistakeKind::Overlap => ["discs that do not overlap", "move one of the discs"],
+            MistakeKind::Outside => ["discs inside the box", "move the disc, or enlarge the box"],
+            MistakeKind::Geometry => {
                 ["a box and discs that a lattice fits", "change the box, the discs or [search]"]
             }
-            Reason::Stability => ["a stable time step", "lower integrator.dt"],
-            Reason::Memory => ["a run that fits into memory", "reduce the particles or the outputs"],
-            Reason::More => ["", ""],
+            MistakeKind::Stability => ["a stable time step", "lower integrator.dt"],
+            MistakeKind::Memory => ["a run that fits into memory", "reduce the particles or the outputs"],
+            MistakeKind::More => ["", ""],
         }
     }
 }
@@ -153,18 +155,18 @@ impl InputError {
 
 /// Collection of mistakes; lists the first ones and counts the rest.
 #[derive(Clone, Debug, Default)]
-pub struct Mistakes {
+pub struct MistakeList {
     named: Vec<InputError>,
     more: usize,
 }
 
-impl Mistakes {
+impl MistakeList {
     /// Largest number of mistakes listed: a file of another kind may have millions.
     pub(crate) const NAMED: usize = 50;
 
     /// True if a further mistake would be listed; otherwise its message need not be formatted.
     pub fn has_room(&self) -> bool {
-        self.named.len() < Mistakes::NAMED
+        self.named.len() < MistakeList::NAMED
     }
 
     pub(crate) fn named(&self) -> &[InputError] {
@@ -193,7 +195,7 @@ impl Mistakes {
         if self.more > 0 {
             let spot = Spot { file: file.to_owned(), place: None };
             errors.push(spot.error(
-                Reason::More,
+                MistakeKind::More,
                 format!("{}, not listed", counted(self.more, "more mistake", "more mistakes")),
             ));
         }
@@ -201,7 +203,7 @@ impl Mistakes {
     }
 }
 
-impl Extend<InputError> for Mistakes {
+impl Extend<InputError> for MistakeList {
     fn extend<T: IntoIterator<Item = InputError>>(&mut self, errors: T) {
         errors.into_iter().for_each(|error| self.push(error));
     }
@@ -242,7 +244,7 @@ fn paragraphs(errors: &[InputError]) -> String {
     match all.len() {
         1 => all.concat(),
         count => {
-            let more = errors.iter().any(|error| error.reason == Reason::More);
+            let more = errors.iter().any(|error| error.reason == MistakeKind::More);
             let count = if more { format!("more than {}", count - 1) } else { count.to_string() };
             let file = &errors[0].file;
             let is_one = errors.iter().all(|error| error.file == *file);
@@ -258,12 +260,12 @@ pub struct Spot {
     /// File, preset, or option of the command line.
     pub file: String,
     /// Location in the file.
-    pub place: Option<Place>,
+    pub place: Option<TextLocation>,
 }
 
 impl Spot {
     /// Mistake at this location.
-    pub fn error(&self, reason: Reason, message: impl Into<String>) -> InputError {
+    pub fn error(&self, reason: MistakeKind, message: impl Into<String>) -> InputError {
         InputError {
             file: self.file.clone(),
             place: self.place,

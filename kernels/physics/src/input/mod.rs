@@ -3,5 +3,5 @@
 mod error;
 mod text;
 
-pub use error::{InputError, InputErrors, Mistakes, Place, Reason, Spot};
+pub use error::{InputError, InputErrors, MistakeKind, MistakeList, Spot, TextLocation};
 pub use text::{InputText, read_text};

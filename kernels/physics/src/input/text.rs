@@ -1,6 +1,6 @@
 //! Text of an input file, with the location of every byte.
 
-use super::error::{InputError, InputErrors, Mistakes, Place, Reason, Spot};
+use super::error::{InputError, InputErrors, MistakeKind, MistakeList, Spot, TextLocation};
 use crate::io::regular_file;
 use std::collections::BTreeSet;
 use std::io;
@@ -47,11 +47,11 @@ impl<'t> InputText<'t> {
     }
 
     /// Location of a byte.
-    pub fn place(&self, offset: usize) -> Place {
+    pub fn place(&self, offset: usize) -> TextLocation {
         let line = self.starts.partition_point(|start| *start <= offset);
         let start = self.starts[line.saturating_sub(1)];
         let column = 1 + self.characters(offset) - self.characters(start);
-        Place { line: line as u32, column: column as u32 }
+        TextLocation { line: line as u32, column: column as u32 }
     }
 
     /// Location of a byte with the name of the file.
@@ -66,12 +66,12 @@ impl<'t> InputText<'t> {
     pub fn table(&self) -> Result<DeTable<'t>, InputErrors> {
         let (table, syntax) = DeTable::parse_recoverable(self.text);
         // One mistake often causes several messages in a line; the first is enough.
-        let (mut known, mut errors) = (BTreeSet::new(), Mistakes::default());
+        let (mut known, mut errors) = (BTreeSet::new(), MistakeList::default());
         for error in syntax {
             let place = error.span().map(|span| self.place(span.start));
             if known.insert(place.map(|place| place.line)) {
                 let spot = Spot { file: self.file.to_owned(), place };
-                errors.push(spot.error(Reason::Syntax, format!("not TOML: {}", error.message())));
+                errors.push(spot.error(MistakeKind::Syntax, format!("not TOML: {}", error.message())));
             }
         }
         errors.none_of(self.file)?;
@@ -96,9 +96,9 @@ pub fn read_text(
     let bytes = regular_file::read(path, longest).map_err(unreadable)?;
     String::from_utf8(bytes).map_err(|cause| {
         let line = regular_file::line_that_is_not_text(cause.as_bytes()).unwrap_or(1);
-        let place = Some(Place { line: line as u32, column: 1 });
+        let place = Some(TextLocation { line: line as u32, column: 1 });
         let spot = Spot { file: path.display().to_string(), place };
-        let error = spot.error(Reason::Syntax, "this line is not UTF-8 text");
+        let error = spot.error(MistakeKind::Syntax, "this line is not UTF-8 text");
         error.expecting("a TOML file in UTF-8").into()
     })
 }

@@ -7,7 +7,7 @@
 //! them, as in Fortran.
 
 use super::FileError;
-use super::growing_file::{GrowingFile, GrowingFileError, Mark};
+use super::growing_file::{FileMark, GrowingFile, GrowingFileError};
 use super::opened::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::run_moment::{FramesEvery, RunHeader, RunMoment};
@@ -22,7 +22,7 @@ pub(crate) const FORMAT: OutputFormat = OutputFormat {
     is_default: false,
     needs_box: false,
     file: "trajectory.dcd",
-    writing: FrameWriting::Growing(SinkKind::of::<Writer>()),
+    writing: FrameWriting::Growing(SinkKind::of::<DcdWriter>()),
     reading: FrameReading::Lacks("sizes"),
 };
 
@@ -39,23 +39,23 @@ pub(crate) struct Positions {
 
 /// Spacing of frames in the heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Spacing {
+struct FrameSpacing {
     /// Steps between frames.
     steps: u64,
     /// Time step (time).
     dt: f64,
 }
 
-impl Spacing {
-    fn of(header: &RunHeader) -> Spacing {
+impl FrameSpacing {
+    fn of(header: &RunHeader) -> FrameSpacing {
         /// Placeholder for a time step or spacing that is not used.
         const NO_MATTER: f64 = 1.0;
         match (header.frames, header.time_step) {
-            (FramesEvery::Time(dt), None) => Spacing { steps: 1, dt },
-            (FramesEvery::Steps(steps), dt) => Spacing { steps, dt: dt.unwrap_or(NO_MATTER) },
+            (FramesEvery::Time(dt), None) => FrameSpacing { steps: 1, dt },
+            (FramesEvery::Steps(steps), dt) => FrameSpacing { steps, dt: dt.unwrap_or(NO_MATTER) },
             // No frame after the start is evenly spaced.
-            (_, Some(dt)) => Spacing { steps: u64::MAX, dt },
-            (FramesEvery::Never, None) => Spacing { steps: 1, dt: NO_MATTER },
+            (_, Some(dt)) => FrameSpacing { steps: u64::MAX, dt },
+            (FramesEvery::Never, None) => FrameSpacing { steps: 1, dt: NO_MATTER },
         }
     }
 
@@ -87,37 +87,37 @@ fn whole(steps: u64) -> i32 {
 
 /// Open file of evenly spaced frames.
 #[derive(Debug)]
-pub(crate) struct Writer {
+pub(crate) struct DcdWriter {
     file: GrowingFile,
-    spacing: Spacing,
+    spacing: FrameSpacing,
     /// Step of the next frame; none before the first.
     next: Option<u64>,
     /// True if the heading has this spacing; otherwise no frames are added.
     is_even: bool,
 }
 
-impl Writer {
+impl DcdWriter {
     /// Returns true if a frame is the next of the evenly spaced ones.
     fn takes(&self, step: u64) -> bool {
         self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
     }
 }
 
-impl Sink for Writer {
+impl Sink for DcdWriter {
     type Entry = Positions;
 
-    fn begin(path: PathBuf, header: &RunHeader) -> Result<Writer, FileError> {
+    fn begin(path: PathBuf, header: &RunHeader) -> Result<DcdWriter, FileError> {
         let file = GrowingFile::create(path)?;
-        Ok(Writer { file, spacing: Spacing::of(header), next: None, is_even: true })
+        Ok(DcdWriter { file, spacing: FrameSpacing::of(header), next: None, is_even: true })
     }
 
     fn resume(
         path: PathBuf,
         header: &RunHeader,
-        mark: Mark,
+        mark: FileMark,
         notes: &mut Vec<String>,
-    ) -> Result<Writer, GrowingFileError> {
-        let (mut file, spacing) = (GrowingFile::resume(path, mark)?, Spacing::of(header));
+    ) -> Result<DcdWriter, GrowingFileError> {
+        let (mut file, spacing) = (GrowingFile::resume(path, mark)?, FrameSpacing::of(header));
         let heading = file.first_bytes(HEADING)?;
         let number = |at: usize| {
             let bytes = heading.get(at..).and_then(|rest| rest.first_chunk());
@@ -136,7 +136,7 @@ impl Sink for Writer {
             ));
         }
         let next = has_begun.then(|| positive(first) + frames * positive(steps));
-        Ok(Writer { file, spacing, next, is_even })
+        Ok(DcdWriter { file, spacing, next, is_even })
     }
 
     fn cut(&mut self) -> Result<(), FileError> {
@@ -176,7 +176,7 @@ impl Sink for Writer {
         self.file.write_all(&bytes)
     }
 
-    fn mark(&mut self) -> Result<Mark, FileError> {
+    fn mark(&mut self) -> Result<FileMark, FileError> {
         self.file.sync()
     }
 }
@@ -194,7 +194,7 @@ fn has_box(frame: &Positions) -> bool {
     frame.cell.iter().all(|side| side.is_finite())
 }
 
-fn heading(bytes: &mut Vec<u8>, frame: &Positions, spacing: Spacing) {
+fn heading(bytes: &mut Vec<u8>, frame: &Positions, spacing: FrameSpacing) {
     let mut numbers = [0i32; 20];
     numbers[1] = whole(frame.step);
     [numbers[2], numbers[9]] = spacing.numbers();
@@ -220,7 +220,7 @@ fn record(bytes: &mut Vec<u8>, content: &[u8]) {
 mod tests {
     use super::*;
 
-    fn header(Spacing { steps, dt }: Spacing) -> RunHeader {
+    fn header(FrameSpacing { steps, dt }: FrameSpacing) -> RunHeader {
         let frames = FramesEvery::Steps(steps);
         RunHeader { frames, time_step: Some(dt), ..RunHeader::default() }
     }
@@ -262,7 +262,8 @@ mod tests {
             places: vec![[1.5, -2.25, 0.0], [step as f32, f32::NAN, 4.0]],
         };
         for (cell, of_a_frame) in [([3.0, 4.0], 4), ([f64::INFINITY; 2], 3)] {
-            let mut file = Writer::begin(path.clone(), &header(Spacing { steps: 10, dt: 0.5 })).unwrap();
+            let mut file =
+                DcdWriter::begin(path.clone(), &header(FrameSpacing { steps: 10, dt: 0.5 })).unwrap();
             for step in [0, 10] {
                 file.write(frame(step, cell)).unwrap();
             }
@@ -287,14 +288,14 @@ mod tests {
     fn frames_are_spaced_as_the_heading_states() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("t.dcd");
-        let even = Spacing { steps: 1000, dt: 0.005 };
+        let even = FrameSpacing { steps: 1000, dt: 0.005 };
         let frame = |step| Positions { step, cell: [3.0, 4.0], places: vec![[step as f32, 0.0, 0.0]] };
         let steps = || -> Vec<f32> {
             let bytes = std::fs::read(&path).unwrap();
             let records = records(&bytes);
             records[3..].chunks(4).map(|frame| f32::from_le_bytes(frame[1].try_into().unwrap())).collect()
         };
-        let mut file = Writer::begin(path.clone(), &header(even)).unwrap();
+        let mut file = DcdWriter::begin(path.clone(), &header(even)).unwrap();
         for step in [0, 1000, 2000, 2050] {
             file.write(frame(step)).unwrap();
         }
@@ -307,12 +308,12 @@ mod tests {
         // Later sessions append with the same spacing and add nothing with another.
         for (spacing, next, expected) in [
             (even, [2050, 3000, 4000], &[0.0, 1000.0, 2000.0, 3000.0, 4000.0][..]),
-            (Spacing { steps: 500, ..even }, [2500, 3000, 3500], &[0.0, 1000.0, 2000.0]),
-            (Spacing { dt: 0.01, ..even }, [3000, 4000, 5000], &[0.0, 1000.0, 2000.0]),
+            (FrameSpacing { steps: 500, ..even }, [2500, 3000, 3500], &[0.0, 1000.0, 2000.0]),
+            (FrameSpacing { dt: 0.01, ..even }, [3000, 4000, 5000], &[0.0, 1000.0, 2000.0]),
         ] {
             std::fs::write(&path, &bytes).unwrap();
             let mut notes = vec![];
-            let mut file = Writer::resume(path.clone(), &header(spacing), mark, &mut notes).unwrap();
+            let mut file = DcdWriter::resume(path.clone(), &header(spacing), mark, &mut notes).unwrap();
             assert_eq!(notes.is_empty(), spacing == even);
             file.cut().unwrap();
             next.iter().for_each(|&step| file.write(frame(step)).unwrap());

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Length and checksum of a file at a moment: they allow truncation to that moment and reveal changes before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Mark {
+pub struct FileMark {
     /// Number of bytes.
     pub bytes: u64,
     /// CRC-32 of these bytes.
@@ -21,7 +21,7 @@ pub struct Mark {
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
-    out: BufWriter<Summed>,
+    out: BufWriter<ChecksummedFile>,
 }
 
 /// Reason why a file cannot be resumed.
@@ -103,20 +103,20 @@ impl GrowingFile {
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, FileError> {
         let path = path.into();
         let file = created(&path)?;
-        Ok(GrowingFile { path, out: BufWriter::new(Summed::from(file)) })
+        Ok(GrowingFile { path, out: BufWriter::new(ChecksummedFile::from(file)) })
     }
 
     /// Resumes a file at a mark; [`cut`](Self::cut) removes everything after it.
     ///
     /// # Errors
     /// If the bytes before the mark have changed, the file is a link, or the system refuses to read or write it.
-    pub fn resume(path: impl Into<PathBuf>, mark: Mark) -> Result<Self, GrowingFileError> {
+    pub fn resume(path: impl Into<PathBuf>, mark: FileMark) -> Result<Self, GrowingFileError> {
         let path = path.into();
-        let mut summed = Summed::from(reopened(&path, mark)?);
+        let mut summed = ChecksummedFile::from(reopened(&path, mark)?);
         summed.read_up_to(mark.bytes).map_err(FileError::at(&path, "reading"))?;
         let found = summed.mark().checksum;
         if found != mark.checksum {
-            let Mark { bytes, checksum: expected } = mark;
+            let FileMark { bytes, checksum: expected } = mark;
             return Err(GrowingFileError::Changed { file: path, bytes, found, expected });
         }
         Ok(GrowingFile { path, out: BufWriter::new(summed) })
@@ -169,7 +169,7 @@ impl GrowingFile {
     ///
     /// # Errors
     /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
-    pub fn sync(&mut self) -> Result<Mark, FileError> {
+    pub fn sync(&mut self) -> Result<FileMark, FileError> {
         self.out.flush().map_err(FileError::at(&self.path, "writing"))?;
         let summed = self.out.get_ref();
         synced(&self.path, &summed.file, summed.bytes)?;
@@ -184,7 +184,7 @@ pub(super) fn created(path: &Path) -> Result<File, FileError> {
 }
 
 /// Opens the file at `path`. It must be an ordinary file, not a link, and at least as long as at a mark.
-pub(super) fn reopened(path: &Path, mark: Mark) -> Result<File, GrowingFileError> {
+pub(super) fn reopened(path: &Path, mark: FileMark) -> Result<File, GrowingFileError> {
     let expected = mark.bytes;
     let file = match OpenOptions::new().read(true).write(true).open(path) {
         Err(cause) if cause.kind() == ErrorKind::NotFound => {
@@ -235,21 +235,21 @@ impl Write for GrowingFile {
 
 /// File with the checksum of the bytes written to it.
 #[derive(Debug)]
-struct Summed {
+struct ChecksummedFile {
     file: File,
     bytes: u64,
     checksum: Hasher,
 }
 
-impl From<File> for Summed {
-    fn from(file: File) -> Summed {
-        Summed { file, bytes: 0, checksum: Hasher::new() }
+impl From<File> for ChecksummedFile {
+    fn from(file: File) -> ChecksummedFile {
+        ChecksummedFile { file, bytes: 0, checksum: Hasher::new() }
     }
 }
 
-impl Summed {
-    fn mark(&self) -> Mark {
-        Mark { bytes: self.bytes, checksum: self.checksum.clone().finalize() }
+impl ChecksummedFile {
+    fn mark(&self) -> FileMark {
+        FileMark { bytes: self.bytes, checksum: self.checksum.clone().finalize() }
     }
 
     fn read_up_to(&mut self, end: u64) -> io::Result<()> {
@@ -264,7 +264,7 @@ impl Summed {
     }
 }
 
-impl Write for Summed {
+impl Write for ChecksummedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         is_as_long_as_written(&self.file, self.bytes)?;
         let written = self.file.write(bytes)?;

@@ -2,14 +2,14 @@
 //!
 //! Grains are of type 1, wall discs of type 2. The box extends from −1/2 to 1/2 in z.
 
-use super::extxyz::{DEPTH, Frame};
+use super::extxyz::{DEPTH, ParticleFrame};
 use super::growing_file::GrowingFile;
 use super::opened::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::run_moment::RunMoment;
 use super::sink::{TextFormat, TextSink};
 use super::trajectory::FrameReading;
-use crate::particles::Kind;
+use crate::particles::ParticleKind;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub(crate) const DUMP: OutputFormat = OutputFormat {
     is_default: false,
     needs_box: true,
     file: "dump.lammpstrj",
-    writing: FrameWriting::Growing(SinkKind::of::<TextSink<Snapshots>>()),
+    writing: FrameWriting::Growing(SinkKind::of::<TextSink<LammpsSnapshots>>()),
     reading: FrameReading::Never,
 };
 
@@ -36,29 +36,29 @@ pub(crate) const DATA: OutputFormat = OutputFormat {
     reading: FrameReading::Never,
 };
 
-struct Snapshots;
+struct LammpsSnapshots;
 
-impl TextFormat for Snapshots {
-    type Entry = Arc<Frame>;
+impl TextFormat for LammpsSnapshots {
+    type Entry = Arc<ParticleFrame>;
 
-    fn entry(moment: &RunMoment<'_>) -> Option<Arc<Frame>> {
+    fn entry(moment: &RunMoment<'_>) -> Option<Arc<ParticleFrame>> {
         Some(moment.frame().clone())
     }
 
-    fn write(frame: Arc<Frame>, out: &mut GrowingFile) -> io::Result<()> {
+    fn write(frame: Arc<ParticleFrame>, out: &mut GrowingFile) -> io::Result<()> {
         write_dump(&frame, out)
     }
 }
 
-fn atom_type(kind: Kind) -> u8 {
+fn atom_type(kind: ParticleKind) -> u8 {
     match kind {
-        Kind::Grain => 1,
-        Kind::Wall => 2,
+        ParticleKind::Grain => 1,
+        ParticleKind::Wall => 2,
     }
 }
 
 /// Lower and upper bounds of the box along x, y and z (length).
-fn bounds(frame: &Frame) -> [[f64; 2]; 3] {
+fn bounds(frame: &ParticleFrame) -> [[f64; 2]; 3] {
     let [x, y] = [0, 1].map(|axis| [frame.origin[axis], frame.origin[axis] + frame.cell[axis]]);
     [x, y, DEPTH]
 }
@@ -70,7 +70,7 @@ fn bounds(frame: &Frame) -> [[f64; 2]; 3] {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
+pub fn write_data(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()> {
     let discs = frame.particles.all();
     writeln!(out, "LAMMPS data file by stripmine, atom_style sphere, timestep = {}\n", frame.step)?;
     writeln!(out, "{} atoms\n2 atom types\n", discs.len())?;
@@ -98,7 +98,7 @@ pub fn write_data(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_dump(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
+pub fn write_dump(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()> {
     let flag = |periodic| if periodic { "pp" } else { "ff" };
     let [x, y] = frame.periodic.unwrap_or([true; 2]).map(flag);
     writeln!(out, "ITEM: TIMESTEP\n{}", frame.step)?;

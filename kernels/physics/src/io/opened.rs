@@ -1,9 +1,9 @@
 //! Open sinks of a run, independent of the format. A separate thread writes frames while the run continues.
 
 use super::FileError;
-use super::growing_file::{GrowingFileError, Mark};
+use super::growing_file::{FileMark, GrowingFileError};
 use super::run_moment::{RunHeader, RunMoment};
-use super::sink::{Due, Sink};
+use super::sink::{Sink, WriteOccasion};
 use std::io;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -16,34 +16,35 @@ pub(crate) trait OpenSink: Send {
     /// Adds a moment; returns true if there was something to add.
     fn add(&mut self, moment: &RunMoment<'_>) -> Result<bool, FileError>;
 
-    fn mark(&mut self) -> Result<Mark, FileError>;
+    fn mark(&mut self) -> Result<FileMark, FileError>;
 }
 
 /// Kind of a sink: its schedule and how it is opened.
 #[derive(Clone, Copy, Debug)]
 pub struct SinkKind {
-    pub(crate) due: Due,
+    pub(crate) due: WriteOccasion,
     pub(crate) begin: Begin,
     pub(crate) resume: Resume,
 }
 
 type Begin = fn(PathBuf, &RunHeader) -> Result<Box<dyn OpenSink>, FileError>;
-type Resume = fn(PathBuf, &RunHeader, Mark, &mut Vec<String>) -> Result<Box<dyn OpenSink>, GrowingFileError>;
+type Resume =
+    fn(PathBuf, &RunHeader, FileMark, &mut Vec<String>) -> Result<Box<dyn OpenSink>, GrowingFileError>;
 
 impl SinkKind {
     pub const fn of<S: Sink>() -> SinkKind {
         SinkKind {
             due: S::DUE,
-            begin: |path, header| Ok(Opened::boxed(S::begin(path.clone(), header)?, path)),
+            begin: |path, header| Ok(ThreadedSink::boxed(S::begin(path.clone(), header)?, path)),
             resume: |path, header, mark, notes| {
-                Ok(Opened::boxed(S::resume(path.clone(), header, mark, notes)?, path))
+                Ok(ThreadedSink::boxed(S::resume(path.clone(), header, mark, notes)?, path))
             },
         }
     }
 }
 
 /// Sink, or the thread that owns it once there is a frame.
-struct Opened<S: Sink> {
+struct ThreadedSink<S: Sink> {
     path: PathBuf,
     sink: Option<S>,
     /// Thread that writes one frame while the next is computed; a faster run waits for it.
@@ -65,9 +66,9 @@ fn write<S: Sink>(mut sink: S, entries: Receiver<S::Entry>) -> (S, io::Result<()
     (sink, written)
 }
 
-impl<S: Sink> Opened<S> {
+impl<S: Sink> ThreadedSink<S> {
     fn boxed(sink: S, path: PathBuf) -> Box<dyn OpenSink> {
-        Box::new(Opened { path, sink: Some(sink), thread: None })
+        Box::new(ThreadedSink { path, sink: Some(sink), thread: None })
     }
 
     /// Sends an entry to the thread, which starts with the first one.
@@ -96,9 +97,9 @@ impl<S: Sink> Opened<S> {
 
     fn failed(&self, cause: io::Error) -> FileError {
         let action = match S::DUE {
-            Due::Events => "writing events",
-            Due::Row => "writing a row",
-            Due::Frame => "writing a frame",
+            WriteOccasion::Events => "writing events",
+            WriteOccasion::Row => "writing a row",
+            WriteOccasion::Frame => "writing a frame",
         };
         FileError::at(&self.path, action)(cause)
     }
@@ -108,7 +109,7 @@ fn gone() -> io::Error {
     io::Error::other("the writing thread has ended")
 }
 
-impl<S: Sink> OpenSink for Opened<S> {
+impl<S: Sink> OpenSink for ThreadedSink<S> {
     fn cut(&mut self) -> Result<(), FileError> {
         match self.here() {
             Ok(sink) => sink.cut(),
@@ -121,13 +122,13 @@ impl<S: Sink> OpenSink for Opened<S> {
             return Ok(false);
         };
         let added = match S::DUE {
-            Due::Frame => self.send(entry),
-            Due::Events | Due::Row => self.here().and_then(|sink| sink.write(entry)),
+            WriteOccasion::Frame => self.send(entry),
+            WriteOccasion::Events | WriteOccasion::Row => self.here().and_then(|sink| sink.write(entry)),
         };
         added.map(|()| true).map_err(|cause| self.failed(cause))
     }
 
-    fn mark(&mut self) -> Result<Mark, FileError> {
+    fn mark(&mut self) -> Result<FileMark, FileError> {
         match self.here() {
             Ok(sink) => sink.mark(),
             Err(cause) => Err(self.failed(cause)),
@@ -135,7 +136,7 @@ impl<S: Sink> OpenSink for Opened<S> {
     }
 }
 
-impl<S: Sink> Drop for Opened<S> {
+impl<S: Sink> Drop for ThreadedSink<S> {
     /// Completes all writes before the folder is used otherwise.
     fn drop(&mut self) {
         drop(self.here());

@@ -1,6 +1,6 @@
 //! Descriptions of the formats for particles.
 
-use super::extxyz::Frame;
+use super::extxyz::ParticleFrame;
 use super::opened::SinkKind;
 use super::trajectory::FrameReading;
 use std::fs::File;
@@ -36,5 +36,5 @@ pub enum FrameWriting {
     /// Writes frame by frame.
     Growing(SinkKind),
     /// Writes the last frame as a whole file.
-    Last(fn(&Frame, &mut BufWriter<&File>) -> io::Result<()>),
+    Last(fn(&ParticleFrame, &mut BufWriter<&File>) -> io::Result<()>),
 }

@@ -30,12 +30,12 @@ pub struct FolderKind {
     /// File with the names of own files.
     pub list: &'static str,
     /// Content of the folder.
-    pub holds: Holds,
+    pub holds: FolderContent,
 }
 
 /// Content of an owned folder.
 #[derive(Clone, Copy, Debug)]
-pub enum Holds {
+pub enum FolderContent {
     /// Own files named by a list, one on each line, beside files of others.
     Files {
         /// First line of the list.
@@ -97,7 +97,7 @@ fn is_folder(path: &Path) -> bool {
 
 /// Names on a JSON list.
 #[derive(Deserialize)]
-struct Names {
+struct JsonFileList {
     #[serde(default)]
     files: BTreeSet<String>,
 }
@@ -110,9 +110,9 @@ impl FolderKind {
     pub(crate) fn listed(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
         let Some(mut names) = names_in(folder)? else { return Ok(None) };
         let (listed, list, below) = match self.holds {
-            Holds::Files { is_shared: true, .. } => return self.read_if_ours(folder),
-            Holds::Files { .. } => (self.read(folder)?, Some(self.list), [].as_slice()),
-            Holds::Folders { below, .. } => (None, None, below),
+            FolderContent::Files { is_shared: true, .. } => return self.read_if_ours(folder),
+            FolderContent::Files { .. } => (self.read(folder)?, Some(self.list), [].as_slice()),
+            FolderContent::Folders { below, .. } => (None, None, below),
         };
         let is_empty = |path: &Path| is_folder(path) && names_in(path).is_ok_and(|it| it == Some(vec![]));
         // A killed process may have left these.
@@ -136,7 +136,7 @@ impl FolderKind {
 
     /// Returns true if a marked file or a folder of own files exists, and an error if its name belongs to a file of others.
     fn owns(&self, folder: &Path, name: &str) -> Result<bool, FolderError> {
-        let Holds::Folders { marked, .. } = self.holds else { return Ok(false) };
+        let FolderContent::Folders { marked, .. } = self.holds else { return Ok(false) };
         let path = folder.join(name);
         match marked.iter().find(|(own, _)| *own == name) {
             Some((_, mark)) => is_marked(&path, mark),
@@ -171,8 +171,8 @@ impl FolderKind {
             let found = found.chars().take(60).flat_map(char::escape_debug).collect();
             FolderError::List { file: file.clone(), line, expected, found }
         };
-        let Holds::Files { heading, is_own, .. } = self.holds else {
-            let names: Result<Names, _> = serde_json::from_str(&text);
+        let FolderContent::Files { heading, is_own, .. } = self.holds else {
+            let names: Result<JsonFileList, _> = serde_json::from_str(&text);
             let names = names.map_err(|error| wrong(error.line(), "JSON with the names of files", ""))?;
             return Ok(Some(names.files));
         };
@@ -273,7 +273,7 @@ impl OwnedFolder {
         names: impl IntoIterator<Item = &'n str>,
         overwrite: bool,
     ) -> Result<(), FolderError> {
-        let Holds::Files { heading, is_shared, .. } = self.kind.holds else { return Ok(()) };
+        let FolderContent::Files { heading, is_shared, .. } = self.kind.holds else { return Ok(()) };
         // A list that lacks its own name is still the list.
         let is_new =
             |name: &&str| !self.is_listed(name) && (*name != self.kind.list || self.listed.is_none());
@@ -384,7 +384,7 @@ impl OwnedFolder {
 
     /// Removes temporary files and folders of killed processes if they are ours. In shared folders they may belong to a running process and stay.
     fn remove_leftovers(&self) -> Result<(), FolderError> {
-        if matches!(self.kind.holds, Holds::Files { is_shared: true, .. }) {
+        if matches!(self.kind.holds, FolderContent::Files { is_shared: true, .. }) {
             return Ok(());
         }
         let names = names_in(&self.path)?.unwrap_or_default();
@@ -410,7 +410,7 @@ mod tests {
     /// A name that leads out of the folder makes a list invalid, even if it ends like an own file, and nothing is written according to it.
     #[test]
     fn lists_reject_names_outside_the_folder() {
-        let holds = |is_shared| Holds::Files {
+        let holds = |is_shared| FolderContent::Files {
             heading: "pictures 1",
             is_own: |name| name.ends_with(".svg"),
             is_shared,

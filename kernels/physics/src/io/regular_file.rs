@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Reason why a readable file is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum Unfit {
+pub(crate) enum UnfitFile {
     /// A folder, a device, a pipe or a socket.
     #[error("it is {0}; expected an ordinary file")]
     Kind(&'static str),
@@ -26,7 +26,7 @@ pub(crate) fn open(path: &Path) -> io::Result<File> {
     // Opening a pipe would wait for its writer, so the kind is checked before.
     match kind(fs::metadata(path)?.file_type()) {
         None => File::open(path),
-        Some(kind) => Err(io::Error::new(ErrorKind::InvalidInput, Unfit::Kind(kind))),
+        Some(kind) => Err(io::Error::new(ErrorKind::InvalidInput, UnfitFile::Kind(kind))),
     }
 }
 
@@ -38,7 +38,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
-        return Err(io::Error::new(ErrorKind::InvalidInput, Unfit::TooLong { most }));
+        return Err(io::Error::new(ErrorKind::InvalidInput, UnfitFile::TooLong { most }));
     }
     Ok(bytes)
 }

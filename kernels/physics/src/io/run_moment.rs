@@ -1,6 +1,6 @@
 //! Moments of a run, as seen by its output files.
 
-use super::extxyz::Frame;
+use super::extxyz::ParticleFrame;
 use crate::particles::PerParticle;
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -56,7 +56,7 @@ pub struct RunMoment<'m> {
     pub row: Option<&'m [f64]>,
     /// Rows of events since the previous moment, each with its line end.
     pub events: &'m str,
-    frame: OnceCell<Arc<Frame>>,
+    frame: OnceCell<Arc<ParticleFrame>>,
 }
 
 impl<'m> RunMoment<'m> {
@@ -70,9 +70,9 @@ impl<'m> RunMoment<'m> {
     }
 
     /// Returns the particles in their box; the frame is made on the first call.
-    pub fn frame(&self) -> &Arc<Frame> {
+    pub fn frame(&self) -> &Arc<ParticleFrame> {
         let &RunMoment { header, number: step, time, .. } = self;
-        let make = || Frame {
+        let make = || ParticleFrame {
             particles: self.per_particle.particles(),
             cell: header.cell,
             origin: header.origin,

@@ -1,7 +1,7 @@
 //! Files that grow during a run: created, appended to, marked for a checkpoint, and resumed at a mark.
 
 use super::FileError;
-use super::growing_file::{GrowingFile, GrowingFileError, Mark};
+use super::growing_file::{FileMark, GrowingFile, GrowingFileError};
 use super::run_moment::{RunHeader, RunMoment};
 use std::io::{self, Write};
 use std::marker::PhantomData;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Occasion for adding to a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Due {
+pub enum WriteOccasion {
     /// Every pause of a run to process events.
     Events,
     /// Rows of observables.
@@ -21,7 +21,7 @@ pub enum Due {
 /// File that grows during a run.
 pub trait Sink: Send + Sized + 'static {
     /// Occasion for adding to it.
-    const DUE: Due = Due::Frame;
+    const DUE: WriteOccasion = WriteOccasion::Frame;
 
     /// Data of a moment.
     type Entry: Send + 'static;
@@ -39,7 +39,7 @@ pub trait Sink: Send + Sized + 'static {
     fn resume(
         path: PathBuf,
         header: &RunHeader,
-        mark: Mark,
+        mark: FileMark,
         notes: &mut Vec<String>,
     ) -> Result<Self, GrowingFileError>;
 
@@ -62,13 +62,13 @@ pub trait Sink: Send + Sized + 'static {
     ///
     /// # Errors
     /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
-    fn mark(&mut self) -> Result<Mark, FileError>;
+    fn mark(&mut self) -> Result<FileMark, FileError>;
 }
 
 /// Content of a growing text file.
 pub trait TextFormat: Send + 'static {
     /// Occasion, see [`Sink`].
-    const DUE: Due = Due::Frame;
+    const DUE: WriteOccasion = WriteOccasion::Frame;
 
     /// Data of a moment, see [`Sink`].
     type Entry: Send + 'static;
@@ -93,7 +93,7 @@ pub trait TextFormat: Send + 'static {
 pub struct TextSink<T>(GrowingFile, PhantomData<T>);
 
 impl<T: TextFormat> Sink for TextSink<T> {
-    const DUE: Due = T::DUE;
+    const DUE: WriteOccasion = T::DUE;
 
     type Entry = T::Entry;
 
@@ -108,7 +108,7 @@ impl<T: TextFormat> Sink for TextSink<T> {
     fn resume(
         path: PathBuf,
         header: &RunHeader,
-        mark: Mark,
+        mark: FileMark,
         _notes: &mut Vec<String>,
     ) -> Result<Self, GrowingFileError> {
         let mut file = GrowingFile::resume(path, mark)?;
@@ -133,7 +133,7 @@ impl<T: TextFormat> Sink for TextSink<T> {
         T::write(entry, &mut self.0)
     }
 
-    fn mark(&mut self) -> Result<Mark, FileError> {
+    fn mark(&mut self) -> Result<FileMark, FileError> {
         self.0.sync()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::growing_file::GrowingFile;
 use super::run_moment::{RunHeader, RunMoment};
-use super::sink::{Due, TextFormat};
+use super::sink::{TextFormat, WriteOccasion};
 use std::io::{self, Write};
 use std::iter::once;
 
@@ -11,7 +11,7 @@ use std::iter::once;
 pub struct ObservedRows;
 
 impl TextFormat for ObservedRows {
-    const DUE: Due = Due::Row;
+    const DUE: WriteOccasion = WriteOccasion::Row;
 
     type Entry = io::Result<String>;
 
@@ -43,7 +43,7 @@ impl TextFormat for ObservedRows {
 pub(crate) struct EventRows;
 
 impl TextFormat for EventRows {
-    const DUE: Due = Due::Events;
+    const DUE: WriteOccasion = WriteOccasion::Events;
 
     type Entry = String;
 

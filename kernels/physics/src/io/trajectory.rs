@@ -1,7 +1,7 @@
 //! Frames of a run, from any of its files that has them.
 
 use super::FORMATS;
-use super::extxyz::Frame;
+use super::extxyz::ParticleFrame;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,11 +16,11 @@ pub enum FrameReading {
 }
 
 /// Iterator over frames; ends after the first wrong one.
-pub(crate) type FrameReader = Box<dyn Iterator<Item = Result<Frame, TrajectoryError>> + Send>;
+pub(crate) type FrameReader = Box<dyn Iterator<Item = Result<ParticleFrame, TrajectoryError>> + Send>;
 
 /// Converts an iterator over frames of a format.
 pub(crate) fn reader<E: Into<TrajectoryError>>(
-    frames: impl Iterator<Item = Result<Frame, E>> + Send + 'static,
+    frames: impl Iterator<Item = Result<ParticleFrame, E>> + Send + 'static,
 ) -> FrameReader {
     Box::new(frames.map(|frame| frame.map_err(Into::into)))
 }
@@ -70,7 +70,7 @@ impl Trajectory {
 }
 
 impl Iterator for Trajectory {
-    type Item = Result<Frame, TrajectoryError>;
+    type Item = Result<ParticleFrame, TrajectoryError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         self.frames.next()

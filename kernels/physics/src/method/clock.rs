@@ -1,6 +1,6 @@
 //! Clock of a simulation, and the schedule of what a run writes.
 
-use crate::scene::Run;
+use crate::scene::RunKeys;
 use std::fmt;
 
 /// Progress of a simulation: steps, time and events.
@@ -200,7 +200,7 @@ pub struct Schedule {
 
 impl Schedule {
     /// Schedule of a scene that counts steps.
-    pub fn of_steps(run: &Run) -> Schedule {
+    pub fn of_steps(run: &RunKeys) -> Schedule {
         Schedule {
             until: Until::Steps(run.steps),
             rows: Every::steps(run.thermo_every),

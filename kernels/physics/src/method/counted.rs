@@ -6,7 +6,7 @@ use stripmine_kernels::isa::{OpClass, OpCounts};
 
 /// Operation counts of one program section in a step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Counted {
+pub struct SectionCounts {
     /// The part of the step.
     pub part: &'static str,
     /// The section of the program.
@@ -23,14 +23,14 @@ pub struct Counted {
     pub divisions_and_roots: u64,
 }
 
-impl Counted {
+impl SectionCounts {
     /// Returns the sections of some programs in order; sections of the same name and length are merged.
-    pub fn of(programs: &[VectorProgram]) -> Vec<Counted> {
-        let mut counted: Vec<Counted> = vec![];
+    pub fn of(programs: &[VectorProgram]) -> Vec<SectionCounts> {
+        let mut counted: Vec<SectionCounts> = vec![];
         for it in programs {
             for (section, counts) in it.program.tally() {
-                let entry = Counted::section(it, section, &counts);
-                let is_same = |known: &&mut Counted| {
+                let entry = SectionCounts::section(it, section, &counts);
+                let is_same = |known: &&mut SectionCounts| {
                     (known.part, known.section, known.length, known.n) == (it.part, section, it.length, it.n)
                 };
                 match counted.iter_mut().find(is_same) {
@@ -46,9 +46,9 @@ impl Counted {
         counted
     }
 
-    fn section(it: &VectorProgram, section: &'static str, counts: &OpCounts) -> Counted {
+    fn section(it: &VectorProgram, section: &'static str, counts: &OpCounts) -> SectionCounts {
         let class = |class: OpClass| counts.of_class(class);
-        Counted {
+        SectionCounts {
             part: it.part,
             section,
             length: it.length,

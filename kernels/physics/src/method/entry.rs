@@ -1,13 +1,13 @@
 //! Descriptions of methods: their entries in the list of methods, and prepared scenes.
 
 use super::clock::{Schedule, Until};
-use super::failure::Failure;
+use super::failure::PhysicsFailure;
 use super::simulation::Simulation;
-use super::trials::{Axis, Trials, Twin};
+use super::trials::{SettingAxis, Trials, Twin};
 use crate::domain::Domain;
-use crate::memory::Foreseen;
+use crate::memory::MemoryForecast;
 use crate::particles::Particles;
-use crate::scene::{Output, SceneErrors, Target, Values, Vocabulary, Warning};
+use crate::scene::{MeanTarget, Output, SceneErrors, SceneValues, Vocabulary, Warning};
 use crate::structure::PairForces;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -16,7 +16,7 @@ use stripmine_kernels::Runnable;
 
 /// Description of a method for the rest of the program.
 #[derive(Debug)]
-pub struct Entry {
+pub struct MethodEntry {
     /// Name, keys and presets of its scenes.
     pub vocabulary: &'static Vocabulary,
     /// Publication that it reproduces.
@@ -24,13 +24,13 @@ pub struct Entry {
     /// One-line description.
     pub doc: &'static str,
     /// Observed quantities: the columns of thermo.csv after the step.
-    pub quantities: &'static [Quantity],
+    pub quantities: &'static [ObservedQuantity],
     /// Checks a scene against every precondition and generates its particles; reports all mistakes at once.
-    pub prepare: fn(Values) -> Result<Prepared, SceneErrors>,
+    pub prepare: fn(SceneValues) -> Result<Prepared, SceneErrors>,
     /// Measurements of its throughput.
     pub benches: &'static [Bench],
     /// Choices that do not change the physics; each combination that the check accepts is a configuration of the scene.
-    pub axes: &'static [Axis],
+    pub axes: &'static [SettingAxis],
     /// Simpler models of its scenes.
     pub twins: &'static [Twin],
     /// Trials of its scenes; none where nothing can be varied.
@@ -39,13 +39,13 @@ pub struct Entry {
 
 /// Observed quantity: a column of thermo.csv.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quantity {
+pub struct ObservedQuantity {
     /// The name of its column.
     pub name: &'static str,
     /// The unit, empty for pure numbers.
     pub unit: &'static str,
     /// Kind of number, which decides how it is averaged.
-    pub kind: Kind,
+    pub kind: QuantityKind,
     /// Description.
     pub doc: &'static str,
 }
@@ -57,7 +57,7 @@ pub(crate) fn is_sound(quantity: &str, value: f64) -> bool {
 
 /// Kind of number that a quantity is. It decides how the quantity is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum QuantityKind {
     /// The time of the row.
     Time,
     /// Instantaneous value: averaged over rows.
@@ -70,26 +70,26 @@ pub enum Kind {
     Kept,
 }
 
-impl Kind {
+impl QuantityKind {
     /// True if it accumulates since the start.
     pub fn grows(self) -> bool {
-        self == Kind::Counter
+        self == QuantityKind::Counter
     }
 }
 
 /// Quantity with the function that evaluates it.
 #[derive(Clone, Copy)]
-pub struct Observable<S: 'static> {
+pub struct MethodObservable<S: 'static> {
     /// Name, unit and meaning.
-    pub quantity: Quantity,
+    pub quantity: ObservedQuantity,
     /// Its value.
     pub of: fn(&S) -> f64,
 }
 
 /// Quantities of a list of observables: the columns of their table.
 pub(crate) const fn quantities<S: 'static, const COUNT: usize>(
-    observables: &[Observable<S>; COUNT],
-) -> [Quantity; COUNT] {
+    observables: &[MethodObservable<S>; COUNT],
+) -> [ObservedQuantity; COUNT] {
     let mut quantities = [observables[0].quantity; COUNT];
     let mut place = 1;
     while place < COUNT {
@@ -121,7 +121,7 @@ pub struct Bench {
     /// Overrides that make the bench.
     pub overrides: &'static [&'static str],
     /// Observed quantities.
-    pub quantities: &'static [Quantity],
+    pub quantities: &'static [ObservedQuantity],
     /// Quantities reported at the start and at the end of the measurement.
     pub compared: &'static [&'static str],
     /// Quantities reported at the end.
@@ -190,7 +190,7 @@ pub struct StepLimit {
     /// Share above which the user is warned; infinite where the limit is informative.
     pub(crate) warned_beyond: f64,
     /// Consequence of longer steps.
-    pub beyond: Beyond,
+    pub beyond: LimitConsequence,
     /// Derivation, with its numbers.
     pub why: String,
 }
@@ -205,7 +205,7 @@ impl StepLimit {
 /// Consequence of a step beyond a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Beyond {
+pub enum LimitConsequence {
     /// Errors grow from step to step.
     Unstable,
     /// Motion is inaccurate.
@@ -216,7 +216,7 @@ pub enum Beyond {
 
 /// Purpose of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum StartPurpose {
     /// Run with observations: everything that they need is tracked.
     Run,
     /// Measurement of speed: only what the motion needs is tracked.
@@ -249,7 +249,7 @@ pub struct Prepared {
     /// Length of the run and intervals of its output.
     pub schedule: Schedule,
     /// Target error of a mean that ends the run early.
-    pub target: Option<Target>,
+    pub target: Option<MeanTarget>,
     /// Files to write.
     pub output: Output,
     /// The box.
@@ -271,7 +271,7 @@ pub struct Prepared {
     /// Expected error of a run and its measure; none where nothing is known.
     pub expected_error: Option<Fact>,
     /// Memory requirement of a run.
-    pub memory: Foreseen,
+    pub memory: MemoryForecast,
     /// Settings of the run by name: precision, integrator and so on.
     pub settings: Map<String, Value>,
     /// Column names of `events.csv`, if the scene asks for a row for each event.
@@ -290,7 +290,7 @@ impl Prepared {
     ///
     /// # Errors
     /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
-    pub fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+    pub fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         self.model.start(purpose)
     }
 }
@@ -335,7 +335,7 @@ pub trait Startable: Send + Sync {
     ///
     /// # Errors
     /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
-    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure>;
+    fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure>;
 
     /// Returns this scene started from other positions and velocities of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;

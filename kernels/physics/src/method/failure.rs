@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use crate::number::significant;
-use crate::reported::{Class, Reported};
+use crate::reported::{ErrorClass, Reported};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value, json};
@@ -15,29 +15,29 @@ use stripmine_kernels::sweep::fast::GridError;
 /// Kind of a failure, by its name in JSON. Kinds shared by several methods are defined here; a method defines its own beside the physics they
 /// concern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FailureKind(#[serde(deserialize_with = "interned")] Name);
+pub struct FailureKind(#[serde(deserialize_with = "interned")] InternedName);
 
 /// Interned name in a failure.
-type Name = &'static str;
+type InternedName = &'static str;
 
 /// Reads a name sent by another rank. Each name is leaked once and kept for the life of the process.
-fn interned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Name, D::Error> {
-    static NAMES: Mutex<BTreeSet<Name>> = Mutex::new(BTreeSet::new());
+fn interned<'de, D: Deserializer<'de>>(deserializer: D) -> Result<InternedName, D::Error> {
+    static NAMES: Mutex<BTreeSet<InternedName>> = Mutex::new(BTreeSet::new());
     let name = String::deserialize(deserializer)?;
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     Ok(names.get(name.as_str()).copied().unwrap_or_else(|| {
-        let name: Name = name.leak();
+        let name: InternedName = name.leak();
         names.insert(name);
         name
     }))
 }
 
 /// Reads values with their names.
-fn interned_values<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Name, f64)>, D::Error> {
+fn interned_values<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(InternedName, f64)>, D::Error> {
     #[derive(Deserialize)]
-    struct Named(#[serde(deserialize_with = "interned")] Name, f64);
-    let values = Vec::<Named>::deserialize(deserializer)?;
-    Ok(values.into_iter().map(|Named(name, value)| (name, value)).collect())
+    struct NamedNumber(#[serde(deserialize_with = "interned")] InternedName, f64);
+    let values = Vec::<NamedNumber>::deserialize(deserializer)?;
+    Ok(values.into_iter().map(|NamedNumber(name, value)| (name, value)).collect())
 }
 
 impl FailureKind {
@@ -74,7 +74,7 @@ impl FailureKind {
 pub struct Culprit {
     /// Word for a particle in its method.
     #[serde(deserialize_with = "interned")]
-    pub(crate) called: Name,
+    pub(crate) called: InternedName,
     /// Its id.
     pub id: u32,
     /// Position (length).
@@ -103,7 +103,7 @@ impl fmt::Display for Culprit {
 
 /// Violation of a method's precondition by the physics, detected in the step in which it occurs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Failure {
+pub struct PhysicsFailure {
     /// Kind.
     pub kind: FailureKind,
     /// Time of the failure; none if no simulation existed or time is irrelevant.
@@ -114,33 +114,33 @@ pub struct Failure {
     pub count: u64,
     /// Measured values and limits, by name.
     #[serde(deserialize_with = "interned_values")]
-    pub values: Vec<(Name, f64)>,
+    pub values: Vec<(InternedName, f64)>,
     /// Sentence that says what broke and names the particles, without the moment.
     pub message: String,
     /// Remedy.
     pub remedy: String,
 }
 
-impl Failure {
+impl PhysicsFailure {
     /// Failure that names no particle and no moment.
-    pub fn new(kind: FailureKind, message: impl Into<String>, remedy: impl Into<String>) -> Failure {
+    pub fn new(kind: FailureKind, message: impl Into<String>, remedy: impl Into<String>) -> PhysicsFailure {
         let (message, remedy) = (message.into(), remedy.into());
-        Failure { kind, at: None, culprits: vec![], count: 0, values: vec![], message, remedy }
+        PhysicsFailure { kind, at: None, culprits: vec![], count: 0, values: vec![], message, remedy }
     }
 
     /// Adds the moment.
-    pub fn at(self, clock: Clock) -> Failure {
-        Failure { at: Some(clock), ..self }
+    pub fn at(self, clock: Clock) -> PhysicsFailure {
+        PhysicsFailure { at: Some(clock), ..self }
     }
 
     /// Adds the number of affected particles and those to name.
-    pub fn of(self, count: u64, culprits: impl Into<Vec<Culprit>>) -> Failure {
-        Failure { count, culprits: culprits.into(), ..self }
+    pub fn of(self, count: u64, culprits: impl Into<Vec<Culprit>>) -> PhysicsFailure {
+        PhysicsFailure { count, culprits: culprits.into(), ..self }
     }
 
     /// Adds measured values and limits.
-    pub fn with(self, values: impl Into<Vec<(&'static str, f64)>>) -> Failure {
-        Failure { values: values.into(), ..self }
+    pub fn with(self, values: impl Into<Vec<(&'static str, f64)>>) -> PhysicsFailure {
+        PhysicsFailure { values: values.into(), ..self }
     }
 
     /// Measured value or limit of a name.
@@ -172,7 +172,7 @@ impl Failure {
 
     /// Serializes a failure, or none.
     pub(crate) fn in_json<S: Serializer>(
-        failure: &Option<Failure>,
+        failure: &Option<PhysicsFailure>,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
         let Some(failure) = failure else { return serializer.serialize_none() };
@@ -184,17 +184,17 @@ impl Failure {
     }
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for PhysicsFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}\n  help: {}", self.what(), self.remedy)
     }
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for PhysicsFailure {}
 
-impl Reported for Failure {
-    fn class(&self) -> Class {
-        Class::Precondition
+impl Reported for PhysicsFailure {
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Precondition
     }
 
     fn remedy(&self) -> Option<String> {
@@ -206,20 +206,20 @@ impl Reported for Failure {
     }
 }
 
-impl From<GridError> for Failure {
-    fn from(error: GridError) -> Failure {
+impl From<GridError> for PhysicsFailure {
+    fn from(error: GridError) -> PhysicsFailure {
         let remedy = "use more discs, a smaller search.skin, or search.by = \"lattice\"";
-        Failure::new(FailureKind::NO_SECTORS, error.to_string(), remedy)
+        PhysicsFailure::new(FailureKind::NO_SECTORS, error.to_string(), remedy)
     }
 }
 
-impl From<ProgramError> for Failure {
-    fn from(error: ProgramError) -> Failure {
+impl From<ProgramError> for PhysicsFailure {
+    fn from(error: ProgramError) -> PhysicsFailure {
         let remedy = match error {
             ProgramError::NoSuchInstructionSet(_) => "set machine.instruction_set = \"auto\"",
             _ => "the program is at fault, not the scene: report this with the scene",
         };
-        Failure::new(FailureKind::MACHINE, error.to_string(), remedy)
+        PhysicsFailure::new(FailureKind::MACHINE, error.to_string(), remedy)
     }
 }
 
@@ -231,7 +231,8 @@ mod tests {
     fn failures_are_sentences_and_data() {
         let culprit = Culprit::in_plane("disc", 7, [1.0, f64::NAN], [0.5, 0.0]);
         let at = |clock| {
-            let failure = Failure::new(FailureKind::NOT_FINITE, format!("first {culprit}"), "halve dt");
+            let failure =
+                PhysicsFailure::new(FailureKind::NOT_FINITE, format!("first {culprit}"), "halve dt");
             failure.at(clock).of(3, [culprit]).with([("limit", 0.25)])
         };
         let failure = at(Clock { steps: 61, time: 0.5, events: 0 });
@@ -246,11 +247,11 @@ mod tests {
             "who": [{"called": "disc", "id": 7, "position": [1.0, null, 0.0], "velocity": [0.5, 0.0, 0.0]}],
         });
         assert_eq!(failure.details(), Some(data));
-        let whole = Failure::in_json(&Some(failure), serde_json::value::Serializer).unwrap();
+        let whole = PhysicsFailure::in_json(&Some(failure), serde_json::value::Serializer).unwrap();
         assert_eq!((&whole["remedy"], &whole["kind"]), (&json!("halve dt"), &json!("not-finite")));
         // A method of events takes no steps.
         assert!(at(Clock { steps: 0, time: 0.5, events: 9 }).what().starts_with("event 9, time 0.5: first"));
-        let refused = Failure::from(ProgramError::NoSuchInstructionSet("avx512"));
+        let refused = PhysicsFailure::from(ProgramError::NoSuchInstructionSet("avx512"));
         assert_eq!((refused.what().as_str(), refused.at), ("this processor has no avx512", None));
         assert!(refused.remedy.contains("instruction_set"));
     }

@@ -1,15 +1,17 @@
 //! List of methods. Each is a folder beside this file and a line of this list.
 
-use super::entry::{Entry, Kind, Prepared, Quantity};
+use super::entry::{MethodEntry, ObservedQuantity, Prepared, QuantityKind};
 use super::start_temperature::{asked_temperature, start_temperature};
 use super::{hard_disks, langevin, lattice_md, nbody};
 use crate::quoted::quoted;
-use crate::scene::{METHOD, Reason, STRUCTURE, SceneError, SceneErrors, TARGET, Value, Values, Vocabulary};
-use crate::structure::{self, Asks, Observable, Seen, observable};
+use crate::scene::{
+    KeyValue, METHOD, MistakeKind, STRUCTURE, SceneError, SceneErrors, SceneValues, TARGET, Vocabulary,
+};
+use crate::structure::{self, SampleData, SamplingKind, StructureObservable, observable};
 use crate::words::nearest;
 
 /// Methods that scenes may name.
-pub type Methods = &'static [&'static Entry];
+pub type Methods = &'static [&'static MethodEntry];
 
 /// All methods of this program.
 pub static METHODS: Methods = &[&lattice_md::ENTRY, &hard_disks::ENTRY, &langevin::ENTRY, &nbody::ENTRY];
@@ -20,14 +22,14 @@ pub fn vocabularies(methods: Methods) -> Vec<&'static Vocabulary> {
 }
 
 /// Returns the method of a name.
-pub fn method(methods: Methods, name: &str) -> Option<&'static Entry> {
+pub fn method(methods: Methods, name: &str) -> Option<&'static MethodEntry> {
     methods.iter().copied().find(|method| method.vocabulary.keys.method == name)
 }
 
 /// Returns the method that observes exactly these columns, in order, after the step.
-pub fn observer(methods: Methods, columns: &[String]) -> Option<&'static Entry> {
-    let names = |method: &Entry| method.quantities.iter().map(|quantity| quantity.name);
-    let is_its = |method: &&'static Entry| names(method).eq(columns.iter().skip(1).map(String::as_str));
+pub fn observer(methods: Methods, columns: &[String]) -> Option<&'static MethodEntry> {
+    let names = |method: &MethodEntry| method.quantities.iter().map(|quantity| quantity.name);
+    let is_its = |method: &&'static MethodEntry| names(method).eq(columns.iter().skip(1).map(String::as_str));
     methods.iter().copied().find(is_its)
 }
 
@@ -39,24 +41,27 @@ pub fn load(
     what: &str,
     overrides: &[String],
     methods: Methods,
-) -> Result<(Prepared, &'static Entry), SceneErrors> {
-    prepare(Values::load(what, overrides, &vocabularies(methods))?, methods)
+) -> Result<(Prepared, &'static MethodEntry), SceneErrors> {
+    prepare(SceneValues::load(what, overrides, &vocabularies(methods))?, methods)
 }
 
 /// Prepares a scene that was read; also returns its method.
 ///
 /// # Errors
 /// [`SceneErrors`]: every violated precondition.
-pub fn prepare(values: Values, methods: Methods) -> Result<(Prepared, &'static Entry), SceneErrors> {
+pub fn prepare(
+    values: SceneValues,
+    methods: Methods,
+) -> Result<(Prepared, &'static MethodEntry), SceneErrors> {
     // Reading has already restricted the method to those of the list.
-    let unlisted = || values.spot(&METHOD).error(Reason::Unknown, "there is no such method");
+    let unlisted = || values.spot(&METHOD).error(MistakeKind::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;
     let wrong = wrong_target(&values, entry);
     let asked = asked_temperature(&values, &entry.vocabulary.keys);
     let spot = values.spot(&STRUCTURE);
     match ((entry.prepare)(values), wrong) {
         (Ok(mut prepared), None) => match not_there(&prepared) {
-            Some(why) => Err(spot.error(Reason::Contradiction, why).into()),
+            Some(why) => Err(spot.error(MistakeKind::Contradiction, why).into()),
             None => {
                 prepared.memory.needed += memory_of_looks(&prepared);
                 prepared.facts.extend(asked.and_then(|asked| start_temperature(asked, &prepared)));
@@ -76,11 +81,11 @@ fn memory_of_looks(prepared: &Prepared) -> u64 {
 
 /// Reason why a requested structure quantity cannot be computed.
 fn not_there(prepared: &Prepared) -> Option<String> {
-    let why = |observable: &Observable| match observable.seen {
-        Seen::Once { asks: Asks::Waves, .. } if prepared.domain.periodic() == [false; 2] => {
+    let why = |observable: &StructureObservable| match observable.seen {
+        SamplingKind::Once { asks: SampleData::Waves, .. } if prepared.domain.periodic() == [false; 2] => {
             Some("needs a periodic side for its waves")
         }
-        Seen::Once { asks: Asks::Forces, .. } if prepared.model.pair_forces().is_none() => {
+        SamplingKind::Once { asks: SampleData::Forces, .. } if prepared.model.pair_forces().is_none() => {
             Some("needs pair forces that act at any moment: this method has none")
         }
         _ if observable.follows_motion()
@@ -98,16 +103,17 @@ fn not_there(prepared: &Prepared) -> Option<String> {
 }
 
 /// Error if the run is to end by a quantity that has no mean.
-fn wrong_target(values: &Values, entry: &Entry) -> Option<SceneError> {
-    let Some(Value::Target(target)) = values.value(&TARGET) else { return None };
-    let has_mean = |quantity: &&Quantity| !matches!(quantity.kind, Kind::Time | Kind::Kept);
+fn wrong_target(values: &SceneValues, entry: &MethodEntry) -> Option<SceneError> {
+    let Some(KeyValue::Target(target)) = values.value(&TARGET) else { return None };
+    let has_mean =
+        |quantity: &&ObservedQuantity| !matches!(quantity.kind, QuantityKind::Time | QuantityKind::Kept);
     let names: Vec<&str> = entry.quantities.iter().filter(has_mean).map(|quantity| quantity.name).collect();
     if names.contains(&target.quantity.as_str()) {
         return None;
     }
     let message =
         format!("`{}` names no quantity that has a mean: \"{}\"", TARGET.path(), quoted(&target.quantity));
-    let error = values.spot(&TARGET).error(Reason::Unknown, message).expecting(names.join(", "));
+    let error = values.spot(&TARGET).error(MistakeKind::Unknown, message).expecting(names.join(", "));
     Some(match nearest(&target.quantity, names.iter().copied()) {
         Some(near) => error.advising(format!("did you mean \"{near}\"?")),
         None => error,

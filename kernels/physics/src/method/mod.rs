@@ -22,13 +22,13 @@ mod trials;
 
 pub use crate::particles::PerParticle;
 pub use clock::{Clock, Every, Schedule, Until, steps_over};
-pub use counted::Counted;
+pub use counted::SectionCounts;
 pub use entry::{
-    Bench, BenchOption, Beyond, Entry, Fact, Kind, Observable, Prepared, Purpose, Quantity, Startable,
-    StepLimit, VectorProgram,
+    Bench, BenchOption, Fact, LimitConsequence, MethodEntry, MethodObservable, ObservedQuantity, Prepared,
+    QuantityKind, StartPurpose, Startable, StepLimit, VectorProgram,
 };
 pub(crate) use entry::{is_sound, quantities};
-pub use failure::{Culprit, Failure, FailureKind};
+pub use failure::{Culprit, FailureKind, PhysicsFailure};
 pub use hard_disks::compress;
 pub use list::{METHODS, Methods, load, method, observer, prepare, vocabularies};
 pub use pairwise::Elapsed;
@@ -40,6 +40,7 @@ pub use snapshot::Snapshot;
 pub(crate) use start_temperature::START_TEMPERATURE;
 pub use stepped::{Stepped, SteppedState, Stepwise};
 pub use trials::{
-    Axis, Balance, Becomes, Decides, Encounter, Length, Parameter, Rewritten, SMALLEST_RADIUS, Setting,
-    Shadow, Theory, Trials, Twin,
+    AxisSetting, ChoiceEffect, DistanceUnit, EncounterGeometry, EnergyBalanceNames, Parameter,
+    SMALLEST_RADIUS, SettingAxis, ShadowEnergy, SimplifiedModel, TheoreticalOrder, TranslatedScene, Trials,
+    Twin,
 };

@@ -1,7 +1,7 @@
 //! Look-up of observed quantities by name.
 
-use super::entry::{Observable, Quantity};
-use crate::reported::{Class, Reported};
+use super::entry::{MethodObservable, ObservedQuantity};
+use crate::reported::{ErrorClass, Reported};
 use serde_json::{Map, Value};
 
 /// Unknown name.
@@ -24,16 +24,16 @@ impl UnknownName {
 }
 
 impl Reported for UnknownName {
-    fn class(&self) -> Class {
-        Class::Precondition
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Precondition
     }
 }
 
 /// Builds a list of observables; each row has name, unit, kind, function that evaluates it, and description.
 macro_rules! observables {
     ($($name:literal, $unit:literal, $kind:expr, $of:expr, $doc:literal;)*) => {
-        [$($crate::method::Observable {
-            quantity: $crate::method::Quantity { name: $name, unit: $unit, kind: $kind, doc: $doc },
+        [$($crate::method::MethodObservable {
+            quantity: $crate::method::ObservedQuantity { name: $name, unit: $unit, kind: $kind, doc: $doc },
             of: $of,
         }),*]
     };
@@ -41,7 +41,7 @@ macro_rules! observables {
 pub(super) use observables;
 
 /// Values of observables in order.
-pub(super) fn values<S>(observables: &[Observable<S>], seen: &S) -> Vec<f64> {
+pub(super) fn values<S>(observables: &[MethodObservable<S>], seen: &S) -> Vec<f64> {
     observables.iter().map(|observable| (observable.of)(seen)).collect()
 }
 
@@ -50,7 +50,7 @@ pub(super) fn values<S>(observables: &[Observable<S>], seen: &S) -> Vec<f64> {
 /// # Panics
 /// If no quantity has this name.
 #[expect(clippy::panic, reason = "a constant: a name that is misspelt does not compile")]
-pub(crate) const fn place(quantities: &[Quantity], name: &str) -> usize {
+pub(crate) const fn place(quantities: &[ObservedQuantity], name: &str) -> usize {
     let mut at = 0;
     while at < quantities.len() {
         if is_same(quantities[at].name, name) {
@@ -74,7 +74,7 @@ const fn is_same(one: &str, other: &str) -> bool {
 ///
 /// # Errors
 /// [`UnknownName`] if no quantity has this name.
-pub fn find(quantities: &[Quantity], name: &str) -> Result<usize, UnknownName> {
+pub fn find(quantities: &[ObservedQuantity], name: &str) -> Result<usize, UnknownName> {
     let unknown = || UnknownName::new("quantity", name, quantities.iter().map(|quantity| quantity.name));
     quantities.iter().position(|quantity| quantity.name == name).ok_or_else(unknown)
 }
@@ -84,7 +84,7 @@ pub fn find(quantities: &[Quantity], name: &str) -> Result<usize, UnknownName> {
 /// # Errors
 /// [`UnknownName`] if a name is not observed.
 pub fn observed<const N: usize>(
-    quantities: &[Quantity],
+    quantities: &[ObservedQuantity],
     values: &[f64],
     names: [&str; N],
 ) -> Result<[f64; N], UnknownName> {
@@ -108,11 +108,11 @@ pub fn summed_up(summary: &Map<String, Value>, name: &str) -> Result<f64, Unknow
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::{Kind, METHODS};
+    use crate::method::{METHODS, QuantityKind};
 
-    const QUANTITIES: &[Quantity] = &[
-        Quantity { name: "time", unit: "time", kind: Kind::Time, doc: "" },
-        Quantity { name: "flow", unit: "", kind: Kind::Instant, doc: "" },
+    const QUANTITIES: &[ObservedQuantity] = &[
+        ObservedQuantity { name: "time", unit: "time", kind: QuantityKind::Time, doc: "" },
+        ObservedQuantity { name: "flow", unit: "", kind: QuantityKind::Instant, doc: "" },
     ];
 
     #[test]
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn every_method_observes_the_time() {
         for method in METHODS {
-            let times = method.quantities.iter().filter(|quantity| quantity.kind == Kind::Time);
+            let times = method.quantities.iter().filter(|quantity| quantity.kind == QuantityKind::Time);
             assert_eq!(times.map(|it| it.name).collect::<Vec<_>>(), ["time"]);
         }
     }

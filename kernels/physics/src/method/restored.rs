@@ -1,7 +1,7 @@
 //! Validation of checkpoints before they are restored. A forged or foreign one is rejected with the name of the bad entry and never computed with.
 
 use super::Clock;
-use crate::io::checkpoint::{Column, Counter};
+use crate::io::checkpoint::{CheckpointColumn, CheckpointCounter};
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::{Element, Storage};
 
@@ -13,13 +13,15 @@ pub(super) const MOST: u64 = 1 << 53;
 /// # Errors
 /// Says what is missing or wrong.
 pub(crate) fn find_column<T: Element>(
-    columns: &[(String, Column)],
+    columns: &[(String, CheckpointColumn)],
     name: &str,
     length: usize,
 ) -> Result<Vec<T>, String> {
     let values: Vec<T> = match find(columns, name, length)? {
-        Column::F64(values) if T::NAME == f64::NAME => values.iter().map(|&x| T::from_f64(x)).collect(),
-        Column::F32(values) if T::NAME == f32::NAME => {
+        CheckpointColumn::F64(values) if T::NAME == f64::NAME => {
+            values.iter().map(|&x| T::from_f64(x)).collect()
+        }
+        CheckpointColumn::F32(values) if T::NAME == f32::NAME => {
             values.iter().map(|&x| T::from_f64(x.into())).collect()
         }
         _ => return Err(format!("the column {name} has another precision")),
@@ -35,12 +37,12 @@ pub(crate) fn find_column<T: Element>(
 /// # Errors
 /// As [`find_column`].
 pub(crate) fn find_counts<'c>(
-    columns: &'c [(String, Column)],
+    columns: &'c [(String, CheckpointColumn)],
     name: &str,
     length: usize,
     most: u64,
 ) -> Result<&'c [u64], String> {
-    let Column::U64(values) = find(columns, name, length)? else {
+    let CheckpointColumn::U64(values) = find(columns, name, length)? else {
         return Err(format!("the column {name} has another type"));
     };
     match values.iter().find(|&&value| value > most) {
@@ -49,7 +51,11 @@ pub(crate) fn find_counts<'c>(
     }
 }
 
-fn find<'c>(columns: &'c [(String, Column)], name: &str, length: usize) -> Result<&'c Column, String> {
+fn find<'c>(
+    columns: &'c [(String, CheckpointColumn)],
+    name: &str,
+    length: usize,
+) -> Result<&'c CheckpointColumn, String> {
     let (_, column) = columns
         .iter()
         .find(|(there, _)| there == name)
@@ -64,10 +70,10 @@ fn find<'c>(columns: &'c [(String, Column)], name: &str, length: usize) -> Resul
 ///
 /// # Errors
 /// Says what is missing or wrong.
-pub(crate) fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Result<f64, String> {
+pub(crate) fn find_sum(counters: &BTreeMap<String, CheckpointCounter>, name: &str) -> Result<f64, String> {
     match counters.get(name) {
-        Some(Counter::Sum(sum)) if sum.is_finite() => Ok(*sum),
-        Some(Counter::Sum(sum)) => Err(format!("the sum {name} is {sum}, not a finite number")),
+        Some(CheckpointCounter::Sum(sum)) if sum.is_finite() => Ok(*sum),
+        Some(CheckpointCounter::Sum(sum)) => Err(format!("the sum {name} is {sum}, not a finite number")),
         _ => Err(format!("the sum {name} is missing")),
     }
 }
@@ -76,10 +82,16 @@ pub(crate) fn find_sum(counters: &BTreeMap<String, Counter>, name: &str) -> Resu
 ///
 /// # Errors
 /// As [`find_sum`].
-pub(crate) fn find_count(counters: &BTreeMap<String, Counter>, name: &str, most: u64) -> Result<u64, String> {
+pub(crate) fn find_count(
+    counters: &BTreeMap<String, CheckpointCounter>,
+    name: &str,
+    most: u64,
+) -> Result<u64, String> {
     match counters.get(name) {
-        Some(Counter::Count(count)) if *count <= most => Ok(*count),
-        Some(Counter::Count(count)) => Err(format!("the count {name} is {count}, more than {most}")),
+        Some(CheckpointCounter::Count(count)) if *count <= most => Ok(*count),
+        Some(CheckpointCounter::Count(count)) => {
+            Err(format!("the count {name} is {count}, more than {most}"))
+        }
         _ => Err(format!("the count {name} is missing")),
     }
 }

@@ -1,6 +1,6 @@
 //! Failures of runs on several ranks.
 
-use super::{Clock, Failure, FailureKind};
+use super::{Clock, FailureKind, PhysicsFailure};
 use crate::ranks::{self, RankError};
 
 /// A simulation that runs on one rank only.
@@ -14,20 +14,20 @@ pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 ///
 /// # Errors
 /// [`Failure`] if there are several.
-pub(crate) fn refuse_several_ranks(why: &str) -> Result<(), Failure> {
+pub(crate) fn refuse_several_ranks(why: &str) -> Result<(), PhysicsFailure> {
     match ranks::crew().count() {
         1 => Ok(()),
         count => {
             let what = format!("cannot run on {count} ranks: {why}");
             let remedy = "use one rank, or several seeds: run --seeds";
-            Err(Failure::new(ONE_RANK, what, remedy))
+            Err(PhysicsFailure::new(ONE_RANK, what, remedy))
         }
     }
 }
 
 /// Failure of the remaining ranks after one is lost.
-pub(crate) fn ended(lost: RankError, at: Clock) -> Failure {
+pub(crate) fn ended(lost: RankError, at: Clock) -> PhysicsFailure {
     let remedy =
         "see its last message; the last checkpoint is complete: resume with --resume, on any number of ranks";
-    Failure::new(RANK_ENDED, lost.to_string(), remedy).at(at)
+    PhysicsFailure::new(RANK_ENDED, lost.to_string(), remedy).at(at)
 }

@@ -1,7 +1,7 @@
 //! Simulation in progress: the interface that runs use for every method.
 
 use super::clock::{Clock, Until};
-use super::failure::Failure;
+use super::failure::PhysicsFailure;
 use super::snapshot::Snapshot;
 use crate::particles::{Particles, PerParticle};
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub trait Simulation: Send {
     ///
     /// # Errors
     /// [`Failure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
-    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure>;
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), PhysicsFailure>;
 
     /// Progress so far.
     fn clock(&self) -> Clock;
@@ -51,7 +51,7 @@ pub trait Simulation: Send {
     ///
     /// # Errors
     /// [`Failure`] as of [`advance`](Self::advance), where such a sum is wrong or cannot be computed.
-    fn check(&self) -> Result<(), Failure> {
+    fn check(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 
@@ -60,7 +60,7 @@ pub trait Simulation: Send {
     ///
     /// # Errors
     /// [`Failure`] that names the first rank that was lost.
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 

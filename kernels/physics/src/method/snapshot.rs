@@ -1,29 +1,29 @@
 //! State of a simulation as a checkpoint stores it.
 
 use super::restored::{MOST, find_count, find_counts, find_sum};
-use crate::io::checkpoint::{Column, Counter};
+use crate::io::checkpoint::{CheckpointColumn, CheckpointCounter};
 use std::collections::BTreeMap;
 
 /// Everything that the future of a simulation depends on, and everything counted since the start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     /// Counts and sums, by name.
-    pub counters: BTreeMap<String, Counter>,
+    pub counters: BTreeMap<String, CheckpointCounter>,
     /// Columns, by name.
-    pub columns: Vec<(String, Column)>,
+    pub columns: Vec<(String, CheckpointColumn)>,
 }
 
 impl Snapshot {
     pub(crate) fn add_count(&mut self, name: &str, count: u64) {
-        self.counters.insert(name.to_owned(), Counter::Count(count));
+        self.counters.insert(name.to_owned(), CheckpointCounter::Count(count));
     }
 
     /// Adds a sum, stored to the last bit.
     pub(crate) fn add_sum(&mut self, name: &str, sum: f64) {
-        self.counters.insert(name.to_owned(), Counter::Sum(sum));
+        self.counters.insert(name.to_owned(), CheckpointCounter::Sum(sum));
     }
 
-    pub(crate) fn add_column(&mut self, name: &str, column: Column) {
+    pub(crate) fn add_column(&mut self, name: &str, column: CheckpointColumn) {
         self.columns.push((name.to_owned(), column));
     }
 
@@ -57,7 +57,7 @@ impl Snapshot {
     /// Says that it is missing or not a number.
     pub fn time(&self, name: &str) -> Result<f64, String> {
         match self.counters.get(name) {
-            Some(Counter::Sum(time)) if !time.is_nan() => Ok(*time),
+            Some(CheckpointCounter::Sum(time)) if !time.is_nan() => Ok(*time),
             _ => Err(format!("the time {name} is missing or not a number")),
         }
     }
@@ -68,7 +68,9 @@ impl Snapshot {
     /// Says that it is missing, or holds what is not a number.
     pub fn times(&self, name: &str, length: usize) -> Result<&[f64], String> {
         match self.column(name) {
-            Some(Column::F64(times)) if times.len() == length && !times.iter().any(|time| time.is_nan()) => {
+            Some(CheckpointColumn::F64(times))
+                if times.len() == length && !times.iter().any(|time| time.is_nan()) =>
+            {
                 Ok(times)
             }
             _ => Err(format!("the column {name} is missing or does not hold {length} times")),
@@ -81,7 +83,7 @@ impl Snapshot {
     /// Says that it is missing, or which entry is not finite.
     pub fn numbers(&self, name: &str, length: usize) -> Result<&[f64], String> {
         match self.column(name) {
-            Some(Column::F64(values)) if values.len() == length => {
+            Some(CheckpointColumn::F64(values)) if values.len() == length => {
                 match values.iter().position(|value| !value.is_finite()) {
                     None => Ok(values),
                     Some(at) => Err(format!("entry {at} of the column {name} is not finite")),
@@ -113,12 +115,12 @@ impl Snapshot {
     /// Says that it is missing.
     pub(crate) fn codes(&self, name: &str, length: usize) -> Result<&[u32], String> {
         match self.column(name) {
-            Some(Column::U32(values)) if values.len() == length => Ok(values),
+            Some(CheckpointColumn::U32(values)) if values.len() == length => Ok(values),
             _ => Err(format!("the column {name} is missing")),
         }
     }
 
-    fn column(&self, name: &str) -> Option<&Column> {
+    fn column(&self, name: &str) -> Option<&CheckpointColumn> {
         self.columns.iter().find(|(there, _)| there == name).map(|(_, column)| column)
     }
 }

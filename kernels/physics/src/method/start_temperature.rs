@@ -4,7 +4,7 @@ use super::{Fact, Prepared};
 use crate::number::significant;
 use crate::observe::{AxisMotion, conserved_axes, temperature};
 use crate::particles::{Particle, Particles};
-use crate::scene::{KeySet, TEMPERATURE, Values};
+use crate::scene::{KeySet, SceneValues, TEMPERATURE};
 use serde_json::json;
 
 /// Relative difference worth reporting.
@@ -14,7 +14,7 @@ const WORTH_A_WORD: f64 = 0.01;
 pub(crate) const START_TEMPERATURE: &str = "start_temperature";
 
 /// Temperature requested for a generated start; none where a bath or a wall sets the temperature.
-pub(super) fn asked_temperature(values: &Values, keys: &KeySet) -> Option<f64> {
+pub(super) fn asked_temperature(values: &SceneValues, keys: &KeySet) -> Option<f64> {
     let is_kept = keys.keys().any(|key| key.name.ends_with("_temperature") && values.is_used(key));
     let is_asked = !is_kept && values.gives(&TEMPERATURE) && values.is_used(&TEMPERATURE);
     values.number(&TEMPERATURE).filter(|asked| is_asked && *asked > 0.0)

@@ -8,13 +8,13 @@
 //! ```
 
 use super::clock::{Clock, Until};
-use super::failure::Failure;
+use super::failure::PhysicsFailure;
 use super::observed::values;
 use super::pairwise::Elapsed;
 use super::simulation::{RunWarning, Simulation};
 use super::snapshot::Snapshot;
-use super::{Observable, PerParticle, RANK_ENDED};
-use crate::io::checkpoint::Column;
+use super::{MethodObservable, PerParticle, RANK_ENDED};
+use crate::io::checkpoint::CheckpointColumn;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,12 +33,12 @@ pub trait SteppedState: Send {
     ///
     /// # Errors
     /// [`Failure`] that names the first rank that was lost.
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 
     /// Everything that the next step depends on, by name.
-    fn columns(&self) -> Vec<(String, Column)>;
+    fn columns(&self) -> Vec<(String, CheckpointColumn)>;
 }
 
 /// Method with a time step. Its functions take the whole simulation: the state and what the method stores beside it.
@@ -48,13 +48,13 @@ pub trait Stepwise: Send + Sized {
     /// Observation of a moment.
     type Seen: 'static;
     /// Evaluation of each quantity from the observation.
-    const OBSERVABLES: &'static [Observable<Self::Seen>];
+    const OBSERVABLES: &'static [MethodObservable<Self::Seen>];
 
     /// Makes one step. Returns true if it was made: an interrupted step leaves the previous state.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
-    fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, Failure>;
+    fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, PhysicsFailure>;
 
     /// Applies a function to the observation of this moment.
     fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Self::Seen) -> R) -> R;
@@ -68,7 +68,7 @@ pub trait Stepwise: Send + Sized {
     ///
     /// # Errors
     /// As there.
-    fn check(_run: &Stepped<Self>) -> Result<(), Failure> {
+    fn check(_run: &Stepped<Self>) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 
@@ -135,7 +135,7 @@ impl<M: Stepwise> Stepped<M> {
         self.state.elapsed().clock()
     }
 
-    fn step_until(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+    fn step_until(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), PhysicsFailure> {
         while !until.iter().any(|moment| moment.has_come(&self.clock())) {
             if interrupted.load(Ordering::Relaxed) || !M::step(self, interrupted)? {
                 break;
@@ -151,7 +151,7 @@ impl<M: Stepwise> Stepped<M> {
 }
 
 impl<M: Stepwise> Simulation for Stepped<M> {
-    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), PhysicsFailure> {
         let begun = Instant::now();
         let done = self.step_until(until, interrupted);
         self.seconds += begun.elapsed().as_secs_f64();
@@ -175,11 +175,11 @@ impl<M: Stepwise> Simulation for Stepped<M> {
         M::per_particle(self)
     }
 
-    fn check(&self) -> Result<(), Failure> {
+    fn check(&self) -> Result<(), PhysicsFailure> {
         M::check(self)
     }
 
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         self.state.check_ranks()
     }
 

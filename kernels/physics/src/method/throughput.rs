@@ -2,9 +2,9 @@
 
 use crate::memory;
 use crate::method::observed::{UnknownName, find};
-use crate::method::{Bench, Failure, Prepared, Purpose, Simulation};
+use crate::method::{Bench, PhysicsFailure, Prepared, Simulation, StartPurpose};
 use crate::ranks;
-use crate::reported::{Class, Reported};
+use crate::reported::{ErrorClass, Reported};
 use crate::scene::SceneErrors;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -15,7 +15,7 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::lattice::ShapeError;
 
 /// Request for a measurement.
-pub struct Measurement {
+pub struct ThroughputRequest {
     /// Benchmark: defines a repeat and the rate.
     pub bench: &'static Bench,
     /// The scene.
@@ -36,7 +36,7 @@ pub enum MeasurementError {
     Scene(#[from] SceneErrors),
     /// The physics fails.
     #[error(transparent)]
-    Physics(#[from] Failure),
+    Physics(#[from] PhysicsFailure),
     /// The method does not observe a quantity that the benchmark reports.
     #[error(transparent)]
     Unknown(#[from] UnknownName),
@@ -116,9 +116,12 @@ impl Serialize for Throughput {
 ///
 /// # Errors
 /// [`MeasurementError`] if the scene is invalid or fails while running.
-pub fn throughput(measurement: Measurement, progress: impl Fn(f64)) -> Result<Throughput, MeasurementError> {
-    let Measurement { bench, prepared, equilibration, steps, repeats } = measurement;
-    let mut running = TimedRun::begin(bench, prepared, equilibration, steps)?;
+pub fn throughput(
+    measurement: ThroughputRequest,
+    progress: impl Fn(f64),
+) -> Result<Throughput, MeasurementError> {
+    let ThroughputRequest { bench, prepared, equilibration, steps, repeats } = measurement;
+    let mut running = ThroughputRun::begin(bench, prepared, equilibration, steps)?;
     for repeat in 0..repeats {
         // Preparation takes about as long as a tenth of a repeat.
         progress((0.1 + repeat as f64) / (0.1 + repeats as f64));
@@ -136,7 +139,7 @@ struct Repeat {
 }
 
 /// Running scene that is timed repeatedly.
-pub struct TimedRun {
+pub struct ThroughputRun {
     bench: &'static Bench,
     prepared: Prepared,
     simulation: Box<dyn Simulation>,
@@ -150,7 +153,7 @@ pub struct TimedRun {
     repeats: Vec<Repeat>,
 }
 
-impl TimedRun {
+impl ThroughputRun {
     /// Starts the scene and runs it for `equilibration` steps or events. Repeats have `steps`.
     ///
     /// # Errors
@@ -163,7 +166,7 @@ impl TimedRun {
     ) -> Result<Self, MeasurementError> {
         prepared.memory.clone().on(ranks::crew()).fits(bench.name)?;
         let begun = Instant::now();
-        let simulation = prepared.start(Purpose::Measurement)?;
+        let simulation = prepared.start(StartPurpose::Measurement)?;
         let start = begun.elapsed().as_secs_f64();
         let places = |names: &'static [&'static str]| {
             names
@@ -174,7 +177,7 @@ impl TimedRun {
         let [compared, at_end] = [places(bench.compared)?, places(bench.at_end)?];
         let (before, repeats) = (vec![], vec![]);
         let mut running =
-            TimedRun { bench, prepared, simulation, start, steps, before, compared, at_end, repeats };
+            ThroughputRun { bench, prepared, simulation, start, steps, before, compared, at_end, repeats };
         running.advance(equilibration)?;
         running.before = running.simulation.row();
         running.simulation.check_ranks()?;
@@ -216,7 +219,7 @@ impl TimedRun {
         [self.start, row, particles, snapshot]
     }
 
-    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+    fn advance(&mut self, steps: u64) -> Result<(), PhysicsFailure> {
         let moment = (self.bench.until)(steps).after(&self.simulation.clock());
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
@@ -228,10 +231,11 @@ impl TimedRun {
     ///
     /// # Panics
     /// If there was no repeat.
-    pub fn measured(mut self) -> Result<Throughput, Failure> {
+    pub fn measured(mut self) -> Result<Throughput, PhysicsFailure> {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
-        let TimedRun { bench, prepared, simulation, steps, before, compared, at_end, repeats, .. } = self;
+        let ThroughputRun { bench, prepared, simulation, steps, before, compared, at_end, repeats, .. } =
+            self;
         let [best, median] = [0, repeats.len() / 2].map(|place| &repeats[place]);
         let measured = Throughput {
             what: bench.name,
@@ -256,13 +260,13 @@ impl TimedRun {
 }
 
 impl Reported for MeasurementError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
             MeasurementError::Scene(errors) => errors.class(),
             MeasurementError::Physics(failure) => failure.class(),
             MeasurementError::Unknown(error) => error.class(),
-            MeasurementError::Shape(_) => Class::Precondition,
-            MeasurementError::Program(_) | MeasurementError::Threads(_) => Class::InputOutput,
+            MeasurementError::Shape(_) => ErrorClass::Precondition,
+            MeasurementError::Program(_) | MeasurementError::Threads(_) => ErrorClass::InputOutput,
         }
     }
 

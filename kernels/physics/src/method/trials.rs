@@ -3,7 +3,7 @@
 
 use super::entry::Prepared;
 use crate::particles::Particles;
-use crate::scene::{Key, Overrides, SceneErrors, Values};
+use crate::scene::{Key, Overrides, SceneErrors, SceneValues};
 
 /// Variations of a method's scenes and quantities to measure.
 #[derive(Clone, Debug)]
@@ -14,15 +14,15 @@ pub struct Trials {
     /// is compared with.
     pub references: [&'static [(&'static str, &'static str)]; 2],
     /// Energy balance, if the method observes one.
-    pub balance: Option<Balance>,
+    pub balance: Option<EnergyBalanceNames>,
     /// Integrators that conserve a shadow energy; none where the method has none.
-    pub shadow: Option<Shadow>,
+    pub shadow: Option<ShadowEnergy>,
     /// Scene of an encounter of two particles, which shows the effect of the step on each contact; none where particles do not touch.
-    pub encounter: fn(&Prepared, Encounter) -> Option<String>,
+    pub encounter: fn(&Prepared, EncounterGeometry) -> Option<String>,
     /// True if runs with different steps follow the same trajectories. With noise they do not, and only means can be compared.
     pub has_trajectories: bool,
     /// Unit of distances between states.
-    pub length: Length,
+    pub length: DistanceUnit,
     /// True if particles touch and separate, so that two particles alone make a collision.
     pub has_contacts: bool,
     /// Quantities that have a mean in a run: what remains comparable after trajectories diverge.
@@ -30,18 +30,18 @@ pub struct Trials {
     /// Observables that come and go with single contacts: their samples have a mean only over independent seeds.
     pub fluctuating: &'static [&'static str],
     /// Moment of inertia over m R², if particles rotate.
-    pub inertia: fn(&Values) -> Option<f64>,
+    pub inertia: fn(&SceneValues) -> Option<f64>,
     /// Theoretical order of convergence of positions for a setting of the axis that decides it.
-    pub theory: fn(&Values, &Prepared, &Setting) -> Option<Theory>,
+    pub theory: fn(&SceneValues, &Prepared, &AxisSetting) -> Option<TheoreticalOrder>,
     /// Parameters that a map of stability may vary beside the step.
     pub parameters: &'static [Parameter],
     /// As the entry's `prepare` at any step: theoretical limits of the step reject nothing.
-    pub at_any_step: fn(Values) -> Result<Prepared, SceneErrors>,
+    pub at_any_step: fn(SceneValues) -> Result<Prepared, SceneErrors>,
 }
 
 /// Unit of distances between states.
 #[derive(Clone, Copy, Debug)]
-pub struct Length {
+pub struct DistanceUnit {
     /// Name of the unit.
     pub unit: &'static str,
     /// Value of the unit (length).
@@ -49,12 +49,12 @@ pub struct Length {
 }
 
 /// The smallest radius.
-pub const SMALLEST_RADIUS: Length =
-    Length { unit: "radii", of: |particles| particles.radii().map_or(1.0, |[smallest, _]| smallest) };
+pub const SMALLEST_RADIUS: DistanceUnit =
+    DistanceUnit { unit: "radii", of: |particles| particles.radii().map_or(1.0, |[smallest, _]| smallest) };
 
 /// Energy balance by names of quantities.
 #[derive(Clone, Copy, Debug)]
-pub struct Balance {
+pub struct EnergyBalanceNames {
     /// Balance error: actual minus expected energy.
     pub error: &'static str,
     /// Energies whose magnitudes add up to the energy of motion.
@@ -66,7 +66,7 @@ pub struct Balance {
 /// Integrators that conserve a shadow energy, which differs from the true one by a power of the step (Bond and Leimkuhler, Acta Numerica 16, 2007).
 /// Without friction and driving, the true energy then fluctuates about it.
 #[derive(Clone, Copy, Debug)]
-pub struct Shadow {
+pub struct ShadowEnergy {
     /// Settings of the axis that decides the order.
     pub integrators: &'static [&'static str],
     /// Name of the quantity that is twice the mean energy of a degree of freedom.
@@ -75,7 +75,7 @@ pub struct Shadow {
 
 /// Geometry of an encounter of two particles.
 #[derive(Clone, Copy, Debug)]
-pub struct Encounter {
+pub struct EncounterGeometry {
     /// Speed of approach (length/time).
     pub speed: f64,
     /// Distance of the line of flight from the other's centre, in sums of the radii: 0 is head on, 1 is grazing.
@@ -96,11 +96,11 @@ pub struct Parameter {
     /// True if the axis is logarithmic.
     pub is_logarithmic: bool,
     /// Default range of a map; none where the scene lacks the parameter.
-    pub range: fn(&Values) -> Option<[f64; 2]>,
+    pub range: fn(&SceneValues) -> Option<[f64; 2]>,
     /// Overrides that set a value in a scene.
-    pub overrides: fn(&Values, f64) -> Overrides,
+    pub overrides: fn(&SceneValues, f64) -> Overrides,
     /// Special values named by theory, with their descriptions.
-    pub marks: fn(&Values) -> Vec<(f64, String)>,
+    pub marks: fn(&SceneValues) -> Vec<(f64, String)>,
 }
 
 /// Simpler model of a scene, used to show which parts the scene needs.
@@ -109,21 +109,21 @@ pub struct Twin {
     /// Name of the missing part.
     pub name: &'static str,
     /// Simplified scene.
-    pub becomes: Becomes,
+    pub becomes: SimplifiedModel,
 }
 
 /// Simplification of a scene; none where the scene lacks the part.
 #[derive(Debug)]
-pub enum Becomes {
+pub enum SimplifiedModel {
     /// Scene with overrides.
-    Overridden(fn(&Values) -> Option<Overrides>),
+    Overridden(fn(&SceneValues) -> Option<Overrides>),
     /// Scene of another method, for a requested quantity.
-    Rewritten(fn(&Values, &Prepared, &str) -> Option<Rewritten>),
+    Rewritten(fn(&SceneValues, &Prepared, &str) -> Option<TranslatedScene>),
 }
 
 /// Scene translated to another method.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rewritten {
+pub struct TranslatedScene {
     /// Scene as TOML.
     pub text: String,
     /// Quantity there that corresponds to the one here.
@@ -134,20 +134,20 @@ pub struct Rewritten {
 
 /// Choice between settings that leave the physics unchanged.
 #[derive(Debug)]
-pub struct Axis {
+pub struct SettingAxis {
     /// Its name.
     pub name: &'static str,
     /// Effect of the choice.
-    pub decides: Decides,
+    pub decides: ChoiceEffect,
     /// The settings.
-    pub settings: &'static [Setting],
+    pub settings: &'static [AxisSetting],
     /// Setting of a prepared scene; none if it is not among these.
     pub own: fn(&Prepared) -> Option<String>,
 }
 
 /// Effect of a choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Decides {
+pub enum ChoiceEffect {
     /// The order of convergence.
     Order,
     /// The precision.
@@ -158,7 +158,7 @@ pub enum Decides {
 
 /// A setting of an axis.
 #[derive(Debug)]
-pub struct Setting {
+pub struct AxisSetting {
     /// Its name.
     pub name: &'static str,
     /// Overrides of the setting.
@@ -168,7 +168,7 @@ pub struct Setting {
 /// Builds the settings of an axis, each with the values of its keys.
 macro_rules! settings {
     ($($name:literal [$($key:ident = $value:expr),*],)*) => {
-        &[$($crate::method::Setting {
+        &[$($crate::method::AxisSetting {
             name: $name,
             overrides: || $crate::scene::Overrides::new()$(.set(&$key, $value))*,
         }),*]
@@ -178,16 +178,16 @@ pub(super) use settings;
 
 /// Theoretical error of positions at the end of a short run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Theory {
+pub struct TheoreticalOrder {
     /// Power of the step with which the error falls.
     pub order: f64,
     /// Reason.
     pub why: &'static str,
 }
 
-impl Axis {
+impl SettingAxis {
     /// Returns the setting of a name.
-    pub fn setting(&self, name: &str) -> Option<&'static Setting> {
+    pub fn setting(&self, name: &str) -> Option<&'static AxisSetting> {
         self.settings.iter().find(|setting| setting.name == name)
     }
 }
@@ -213,7 +213,7 @@ mod tests {
     ];
 
     /// All overrides of studies, and some that a scene rejects or that no method has.
-    fn all_overrides(values: &Values) -> Vec<Overrides> {
+    fn all_overrides(values: &SceneValues) -> Vec<Overrides> {
         let entry = method(METHODS, values.method()).unwrap();
         let settings = entry.axes.iter().flat_map(|axis| axis.settings);
         let mut all: Vec<Overrides> = settings.map(|setting| (setting.overrides)()).collect();
@@ -222,8 +222,8 @@ mod tests {
             all.extend(range.map(|value| (parameter.overrides)(values, value)));
         }
         all.extend(entry.twins.iter().filter_map(|twin| match twin.becomes {
-            Becomes::Overridden(overrides) => overrides(values),
-            Becomes::Rewritten(_) => None,
+            SimplifiedModel::Overridden(overrides) => overrides(values),
+            SimplifiedModel::Rewritten(_) => None,
         }));
         assert!(!all.is_empty());
         let one = Overrides::new;
@@ -244,17 +244,17 @@ mod tests {
     #[test]
     fn overrides_equal_their_text_form() {
         let known = vocabularies(METHODS);
-        let outcome = |values: Result<Values, SceneErrors>| {
+        let outcome = |values: Result<SceneValues, SceneErrors>| {
             let prepared = values.and_then(|values| prepare(values, METHODS));
             prepared.map(|(prepared, _)| (prepared.particles().checksum(), prepared.scene))
         };
         let (mut refused, mut compared) = (0, 0);
         for (preset, given) in SCENES {
             let given: Vec<String> = given.iter().map(|&text| text.to_owned()).collect();
-            let values = Values::load(preset, &given, &known).unwrap();
+            let values = SceneValues::load(preset, &given, &known).unwrap();
             for overrides in all_overrides(&values) {
                 let all = [&given[..], &overrides.texts()].concat();
-                let by_texts = outcome(Values::load(preset, &all, &known));
+                let by_texts = outcome(SceneValues::load(preset, &all, &known));
                 assert_eq!(outcome(values.with(&overrides)), by_texts, "{preset} {all:?}");
                 refused += usize::from(by_texts.is_err());
                 compared += 1;
@@ -268,11 +268,11 @@ mod tests {
     fn deactivated_values_are_restored() {
         let known = vocabularies(METHODS);
         let given = ["integrator.kind=velocity-verlet".to_owned()];
-        let values = Values::load("two-discs", &given, &known).unwrap();
+        let values = SceneValues::load("two-discs", &given, &known).unwrap();
         let key = |name| method(METHODS, values.method()).unwrap().vocabulary.keys.key("integrator", name);
         let (kind, carried) = (key("kind").unwrap(), key("values").unwrap());
         assert!(!values.gives(carried));
         let again = values.with(&Overrides::new().set(kind, "gear")).unwrap();
-        assert_eq!(again.given(carried), Some(&crate::scene::Value::Whole(5)));
+        assert_eq!(again.given(carried), Some(&crate::scene::KeyValue::Whole(5)));
     }
 }

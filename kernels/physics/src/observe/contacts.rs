@@ -1,11 +1,11 @@
 //! Contacts and sums over them in the order of the discs: the sequential reference for faster versions.
 
 use crate::domain::Domain;
-use crate::near::Near;
-use crate::particles::{Kind, Particle, Particles};
+use crate::near::NeighbourSearch;
+use crate::particles::{Particle, ParticleKind, Particles};
 use std::ops::Range;
-use stripmine_kernels::law::granular::{Contact, Disc, Granular};
-use stripmine_kernels::sweep::pair::{Body, Pair};
+use stripmine_kernels::law::granular::{Contact, EqualDiscs, Granular};
+use stripmine_kernels::sweep::pair::{Pair, PairBody};
 
 /// Sums over the contacts with at least one grain.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,13 +22,13 @@ pub struct ContactSums {
 
 impl ContactSums {
     /// Sums over the contacts of some grains with the discs after each of them.
-    pub(super) fn over(grains: Range<usize>, discs: &Placed<'_>, contact: &Contact) -> ContactSums {
+    pub(super) fn over(grains: Range<usize>, discs: &WrappedDiscs<'_>, contact: &Contact) -> ContactSums {
         let mut sums = ContactSums::default();
         discs.each_contact(grains, |i, j, penetration, reach| {
             sums.count += 1;
             sums.elastic += contact.energy(|number| number, penetration * reach);
             sums.deepest = sums.deepest.max(penetration);
-            if discs.all[j].kind == Kind::Grain {
+            if discs.all[j].kind == ParticleKind::Grain {
                 sums.virial += discs.virial(contact, i, j);
             }
         });
@@ -45,22 +45,22 @@ impl ContactSums {
 }
 
 /// Discs, grains first, with their positions inside the box.
-pub(super) struct Placed<'a> {
+pub(super) struct WrappedDiscs<'a> {
     domain: Domain,
     all: &'a [Particle],
     /// Positions inside the box (length).
     places: Vec<[f64; 2]>,
-    near: Near,
+    near: NeighbourSearch,
 }
 
-impl<'a> Placed<'a> {
+impl<'a> WrappedDiscs<'a> {
     /// Wraps the particles and sorts them for neighbour searches.
     pub(super) fn new(particles: &'a Particles, domain: &Domain) -> Self {
         let all = particles.all();
         let places: Vec<[f64; 2]> = all.iter().map(|disc| domain.wrapped(disc.place())).collect();
         let reach = 2.0 * particles.radii().map_or(1.0, |[_, largest]| largest);
-        let near = Near::among(*domain, places.iter().copied(), reach);
-        Placed { domain: *domain, all, places, near }
+        let near = NeighbourSearch::among(*domain, places.iter().copied(), reach);
+        WrappedDiscs { domain: *domain, all, places, near }
     }
 
     /// Position of a disc inside the box (length).
@@ -89,14 +89,14 @@ impl<'a> Placed<'a> {
     /// Virial (r_i − r_j)·F_i of two grains in contact (energy). Friction is perpendicular to the line of centres and does not contribute.
     fn virial(&self, contact: &Contact, i: usize, j: usize) -> f64 {
         let [own, partner] = [&self.all[i], &self.all[j]];
-        let body = |particle: &Particle, [x, y]: [f64; 2]| Body {
+        let body = |particle: &Particle, [x, y]: [f64; 2]| PairBody {
             velocity: particle.planar_velocity(),
             radius: particle.radius,
             inverse_mass: 1.0 / particle.mass,
-            ..Body::at(x, y)
+            ..PairBody::at(x, y)
         };
         // The law reads radius and mass of each disc from the pair.
-        let alike = Disc { radius: own.radius, inverse_mass: 1.0 / own.mass };
+        let alike = EqualDiscs { radius: own.radius, inverse_mass: 1.0 / own.mass };
         let law = Granular::<false, false> { contact: *contact, disc: alike };
         // Each disc has the velocity of its own position.
         let apart = self.domain.displacement(self.places[j], self.places[i]);
@@ -108,7 +108,7 @@ impl<'a> Placed<'a> {
 /// order of the first disc, then of the second.
 pub fn contacts(particles: &Particles, domain: &Domain) -> Vec<(usize, usize, f64, f64)> {
     let mut found = Vec::new();
-    let discs = Placed::new(particles, domain);
+    let discs = WrappedDiscs::new(particles, domain);
     discs.each_contact(0..particles.grain_count(), |i, j, penetration, reach| {
         found.push((i, j, penetration, reach));
     });

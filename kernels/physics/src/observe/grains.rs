@@ -1,6 +1,6 @@
 //! Sums over the grains.
 
-use super::{AxisMotion, Scenery};
+use super::{AxisMotion, SceneProperties};
 use crate::particles::Particle;
 
 /// Sums over the grains at one moment.
@@ -34,13 +34,13 @@ impl GrainSums {
     #[inline]
     pub fn add(
         &mut self,
-        scenery: &Scenery,
+        scenery: &SceneProperties,
         grain: &Particle,
         velocity: [f64; 2],
         omega: f64,
         place: impl FnOnce() -> [f64; 2],
     ) {
-        let Scenery { domain, gravity, inertia_factor, .. } = scenery;
+        let SceneProperties { domain, gravity, inertia_factor, .. } = scenery;
         let Particle { mass, radius, .. } = *grain;
         let square = velocity[0] * velocity[0] + velocity[1] * velocity[1];
         self.count += 1;

@@ -12,7 +12,7 @@ pub(crate) use thermal::{conserved_axes, relative_energy_error, temperature};
 
 use crate::domain::Domain;
 use crate::particles::{Particle, Particles};
-use contacts::Placed;
+use contacts::WrappedDiscs;
 use serde::Serialize;
 use std::ops::Range;
 use stripmine_kernels::law::granular::Contact;
@@ -20,7 +20,7 @@ use stripmine_kernels::over_parts;
 
 /// Properties of a scene that observables depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scenery {
+pub struct SceneProperties {
     /// Box.
     pub domain: Domain,
     /// Contact law.
@@ -65,25 +65,25 @@ pub struct Observation {
 
 /// Sums over the discs of a moment, computed once for all observables.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sums {
+pub struct ObservationSums {
     /// Sums over the grains.
     pub grains: GrainSums,
     /// Sums over the contacts.
     pub contacts: ContactSums,
 }
 
-impl Sums {
+impl ObservationSums {
     /// Sums over particles, in parallel by tasks. `work` returns the work of gravity on a grain, by its number; it is called with gravity only.
     pub(crate) fn over_parts(
         particles: &Particles,
-        scenery: &Scenery,
+        scenery: &SceneProperties,
         work: impl Fn(usize, &Particle, [f64; 2]) -> f64 + Sync,
-    ) -> Sums {
-        let discs = Placed::new(particles, &scenery.domain);
+    ) -> ObservationSums {
+        let discs = WrappedDiscs::new(particles, &scenery.domain);
         let parts = over_parts(0..particles.grain_count(), |grains| {
-            Sums::over(grains, &discs, particles, scenery, &work)
+            ObservationSums::over(grains, &discs, particles, scenery, &work)
         });
-        let mut sums = Sums::default();
+        let mut sums = ObservationSums::default();
         for part in &parts {
             sums.grains.join(&part.grains);
             sums.contacts.join(&part.contacts);
@@ -94,11 +94,11 @@ impl Sums {
     /// Sums over some grains, one after the other.
     fn over(
         grains: Range<usize>,
-        discs: &Placed<'_>,
+        discs: &WrappedDiscs<'_>,
         particles: &Particles,
-        scenery: &Scenery,
+        scenery: &SceneProperties,
         work: impl Fn(usize, &Particle, [f64; 2]) -> f64,
-    ) -> Sums {
+    ) -> ObservationSums {
         let mut sums = GrainSums::default();
         for number in grains.clone() {
             let grain = &particles.all()[number];
@@ -107,20 +107,25 @@ impl Sums {
                 sums.gravity_work += work(number, grain, grain.place());
             }
         }
-        Sums { grains: sums, contacts: ContactSums::over(grains, discs, &scenery.contact) }
+        ObservationSums { grains: sums, contacts: ContactSums::over(grains, discs, &scenery.contact) }
     }
 }
 
 impl Observation {
     /// Observes particles sequentially.
-    pub fn of(step: u64, time: f64, particles: &Particles, scenery: &Scenery) -> Observation {
-        let (discs, grains) = (Placed::new(particles, &scenery.domain), 0..particles.grain_count());
-        Observation::new(step, time, &Sums::over(grains, &discs, particles, scenery, |_, _, _| 0.0), scenery)
+    pub fn of(step: u64, time: f64, particles: &Particles, scenery: &SceneProperties) -> Observation {
+        let (discs, grains) = (WrappedDiscs::new(particles, &scenery.domain), 0..particles.grain_count());
+        Observation::new(
+            step,
+            time,
+            &ObservationSums::over(grains, &discs, particles, scenery, |_, _, _| 0.0),
+            scenery,
+        )
     }
 
     /// Observation from sums.
-    pub fn new(step: u64, time: f64, sums: &Sums, scenery: &Scenery) -> Observation {
-        let Sums { grains, contacts } = sums;
+    pub fn new(step: u64, time: f64, sums: &ObservationSums, scenery: &SceneProperties) -> Observation {
+        let ObservationSums { grains, contacts } = sums;
         let [momentum_x, momentum_y] = grains.momentum;
         let mut seen = Observation {
             step,

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 use std::collections::HashMap;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 
 /// Draws `count` different sites of a mesh of some columns and rows, every choice and order equally likely (Fisher and Yates). Memory grows with
 /// the sites drawn, not with the mesh: only exchanged entries of the shuffled list are stored.
@@ -12,7 +12,7 @@ use stripmine_kernels::noise::{Purpose, Stream};
 pub(crate) fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
     let places = columns * rows;
     assert!(count <= places, "{count} of {places} sites");
-    let mut random = Stream::new(seed, Purpose::Placement, 0);
+    let mut random = Stream::new(seed, RandomPurpose::Placement, 0);
     let mut exchanged = HashMap::new();
     let mut draw = |drawn: usize| {
         let first = exchanged.remove(&drawn).unwrap_or(drawn);
@@ -33,7 +33,7 @@ mod tests {
     fn sites_match_a_shuffled_list() {
         for (columns, rows, count) in [(1, 1, 1), (7, 5, 35), (7, 5, 1), (30, 40, 600), (500, 300, 90)] {
             for seed in 0..20 {
-                let mut random = Stream::new(seed, Purpose::Placement, 0);
+                let mut random = Stream::new(seed, RandomPurpose::Placement, 0);
                 let mut list: Vec<usize> = (0..columns * rows).collect();
                 for drawn in 0..count {
                     list.swap(drawn, random.random_range(drawn..columns * rows));

@@ -7,12 +7,12 @@ mod rows;
 pub(crate) use mesh::mesh;
 pub use random::Second;
 pub(crate) use random::stir;
-pub(crate) use random::{Filling, random};
-pub(crate) use rows::{Row, row};
+pub(crate) use random::{RandomPlacement, random};
+pub(crate) use rows::{WallRow, row};
 
-use crate::particles::{Kind, Particle, Particles, in_space};
+use crate::particles::{Particle, ParticleKind, Particles, in_space};
 use rand::RngExt;
-use stripmine_kernels::noise::{Purpose, Stream, normals};
+use stripmine_kernels::noise::{RandomPurpose, Stream, normals};
 
 /// Periodic box filled with equal discs.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Pac
     let pairs = ((least as f64 * spacing / row_height).sqrt() / 2.0).round().max(1.0) as usize;
     let rows = 2 * pairs;
     let columns = least.div_ceil(rows);
-    let mut random = Stream::new(seed, Purpose::Placement, 0);
+    let mut random = Stream::new(seed, RandomPurpose::Placement, 0);
     let mut discs = Vec::new();
     for row in 0..rows {
         for column in 0..columns {
@@ -45,12 +45,12 @@ pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Pac
             let angle = random.random_range(0.0..std::f64::consts::TAU);
             discs.push(Particle {
                 id,
-                kind: Kind::Grain,
+                kind: ParticleKind::Grain,
                 position: in_space([
                     (column as f64 + offset) * spacing + length * libm::cos(angle),
                     (row as f64 + 0.5) * row_height + length * libm::sin(angle),
                 ]),
-                velocity: in_space(normals(seed, Purpose::Placement, id, 1).map(|v| v * kt.sqrt())),
+                velocity: in_space(normals(seed, RandomPurpose::Placement, id, 1).map(|v| v * kt.sqrt())),
                 angle: 0.0,
                 omega: 0.0,
                 radius: 0.5,

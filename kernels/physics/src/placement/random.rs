@@ -1,15 +1,15 @@
 //! Random placement without overlap.
 
 use crate::domain::Domain;
-use crate::near::Near;
-use crate::particles::{Kind, Particle, in_space};
+use crate::near::NeighbourSearch;
+use crate::particles::{Particle, ParticleKind, in_space};
 use rand::distr::Distribution;
 use rand::{Rng, RngExt};
-use stripmine_kernels::noise::{Purpose, Stream, normals};
+use stripmine_kernels::noise::{RandomPurpose, Stream, normals};
 
 /// Specification of a random placement.
 #[derive(Clone, Debug)]
-pub(crate) struct Filling<'a> {
+pub(crate) struct RandomPlacement<'a> {
     /// Box of the placement.
     pub domain: Domain,
     /// Lower and upper corner of the region for discs, surfaces included (length). Centres may be anywhere along a periodic side that the region
@@ -62,7 +62,7 @@ impl Second {
 /// Failure of the random placement to find free space.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("random placement found room for {placed} of {asked} discs; the next found none in {tries} tries")]
-pub(crate) struct Jammed {
+pub(crate) struct PlacementJammed {
     /// Discs placed.
     pub placed: usize,
     /// Discs asked for.
@@ -78,11 +78,12 @@ const TRIES: usize = 200_000;
 ///
 /// # Errors
 /// [`Jammed`] if a disc finds no free space.
-pub(crate) fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
-    let Filling { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } = *filling;
+pub(crate) fn random(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, PlacementJammed> {
+    let RandomPlacement { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } =
+        *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
     let largest = second.largest(mean) * (1.0 + cut);
-    let mut near = Near::new(domain, (2.0 * largest).max(largest + obstacle));
+    let mut near = NeighbourSearch::new(domain, (2.0 * largest).max(largest + obstacle));
     let mut circles: Vec<f64> = Vec::with_capacity(obstacles.len() + count.min(1 << 20));
     for disc in obstacles {
         near.add(circles.len() as u32, domain.wrapped(disc.place()));
@@ -90,17 +91,17 @@ pub(crate) fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
     }
     let mut discs = Vec::new();
     for id in 1..=count as u32 {
-        let mut stream = Stream::new(seed, Purpose::Placement, id);
+        let mut stream = Stream::new(seed, RandomPurpose::Placement, id);
         let kind = if second.has(id) { second.radius } else { mean };
         let radius = kind * (1.0 + stream.sample(TruncatedNormal { deviation: filling.spread, cut }));
-        let jammed = Jammed { placed: discs.len(), asked: count, tries: TRIES };
+        let jammed = PlacementJammed { placed: discs.len(), asked: count, tries: TRIES };
         let ranges = [0, 1].map(|axis| {
             let [low, high] = room.map(|corner| corner[axis]);
             let open = domain.is_periodic(axis) && high - low >= domain.length(axis);
             if open { [low, high] } else { [low + radius, high - radius] }
         });
         if ranges.iter().any(|[low, high]| low > high) {
-            return Err(Jammed { tries: 0, ..jammed });
+            return Err(PlacementJammed { tries: 0, ..jammed });
         }
         let mut draw = || {
             let position = ranges.map(|[low, high]| stream.random_range(low..=high));
@@ -116,7 +117,7 @@ pub(crate) fn random(filling: &Filling<'_>) -> Result<Vec<Particle>, Jammed> {
         let share = radius / mean;
         discs.push(Particle {
             id,
-            kind: Kind::Grain,
+            kind: ParticleKind::Grain,
             position: in_space(position),
             velocity: [0.0; 3],
             angle: 0.0,
@@ -168,7 +169,8 @@ impl Distribution<f64> for TruncatedNormal {
 /// have no net momentum if `balanced`.
 pub(crate) fn stir(discs: &mut [Particle], seed: u64, balanced: bool, deviation: impl Fn(&Particle) -> f64) {
     for disc in discs.iter_mut() {
-        disc.velocity = in_space(normals(seed, Purpose::Placement, disc.id, 1).map(|v| v * deviation(disc)));
+        disc.velocity =
+            in_space(normals(seed, RandomPurpose::Placement, disc.id, 1).map(|v| v * deviation(disc)));
     }
     if balanced {
         let mass: f64 = discs.iter().map(|disc| disc.mass).sum();
@@ -183,8 +185,8 @@ pub(crate) fn stir(discs: &mut [Particle], seed: u64, balanced: bool, deviation:
 mod tests {
     use super::*;
 
-    fn filling() -> Filling<'static> {
-        Filling {
+    fn filling() -> RandomPlacement<'static> {
+        RandomPlacement {
             domain: Domain::planar([-2.0, 1.0], [30.0, 20.0], [true, false]),
             room: [[-2.0, 1.0], [28.0, 21.0]],
             obstacles: &[],
@@ -202,7 +204,7 @@ mod tests {
     #[test]
     fn two_kinds_are_mixed_evenly() {
         let second = Second { radius: 0.7, share: 0.25 };
-        let discs = random(&Filling { count: 40, spread: 0.0, second, ..filling() }).unwrap();
+        let discs = random(&RandomPlacement { count: 40, spread: 0.0, second, ..filling() }).unwrap();
         let larger: Vec<u32> = discs.iter().filter(|disc| disc.radius == 0.7).map(|disc| disc.id).collect();
         assert_eq!(larger, [4, 8, 12, 16, 20, 24, 28, 32, 36, 40]);
         assert!(discs.iter().all(|disc| (disc.mass / disc.radius.powi(2) - 8.0).abs() < 1e-12));
@@ -230,29 +232,29 @@ mod tests {
             }
         }
         assert_eq!(discs, random(&filling).unwrap());
-        assert_ne!(discs, random(&Filling { seed: 10, ..filling }).unwrap());
+        assert_ne!(discs, random(&RandomPlacement { seed: 10, ..filling }).unwrap());
     }
 
     /// A change of these bits changes every scene with a random start; a new version of `rand` must not cause it unnoticed.
     #[test]
     fn bits_of_a_random_start_are_fixed() {
-        let mut discs = random(&Filling { count: 40, ..filling() }).unwrap();
+        let mut discs = random(&RandomPlacement { count: 40, ..filling() }).unwrap();
         stir(&mut discs, 9, true, |_| 0.5);
         assert_eq!(crate::particles::Particles::new(discs).checksum(), "5ba7c8a9");
     }
 
     #[test]
     fn too_many_discs_are_refused() {
-        let jammed = random(&Filling { count: 700, ..filling() }).unwrap_err();
+        let jammed = random(&RandomPlacement { count: 700, ..filling() }).unwrap_err();
         assert!(jammed.asked == 700 && (350..450).contains(&jammed.placed), "{jammed}");
-        let narrow = Filling { room: [[-2.0, 1.0], [28.0, 1.3]], ..filling() };
+        let narrow = RandomPlacement { room: [[-2.0, 1.0], [28.0, 1.3]], ..filling() };
         assert_eq!(random(&narrow).unwrap_err().placed, 0);
     }
 
     /// Variance of a Gaussian cut at ± c standard deviations: 1 − 2 c φ(c)/(2Φ(c) − 1).
     #[test]
     fn radii_are_gaussian_within_the_cut() {
-        let mut stream = Stream::new(3, Purpose::Test, 1);
+        let mut stream = Stream::new(3, RandomPurpose::Test, 1);
         for (cut, variance) in [(0.5, 0.080_5), (2.0, 0.773_7), (9.0, 1.0)] {
             let n = 40_000;
             let numbers: Vec<f64> =

@@ -8,7 +8,7 @@ use std::thread;
 const LOOKS: u32 = 20_000;
 
 /// A rank with a channel from and to each other rank.
-pub struct Local {
+pub struct ThreadRank {
     rank: usize,
     to: Vec<Sender<Parcel>>,
     from: Vec<Receiver<Parcel>>,
@@ -16,12 +16,12 @@ pub struct Local {
 }
 
 /// Creates ranks, each for a thread of its own that has `threads` threads.
-pub fn ranks(count: usize, threads: usize) -> Vec<Local> {
+pub fn ranks(count: usize, threads: usize) -> Vec<ThreadRank> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     // Sleeping is better where other threads need the core.
     let looks = if count * threads <= cores { LOOKS } else { 1 };
-    let mut ranks: Vec<Local> =
-        (0..count).map(|rank| Local { rank, to: vec![], from: vec![], looks }).collect();
+    let mut ranks: Vec<ThreadRank> =
+        (0..count).map(|rank| ThreadRank { rank, to: vec![], from: vec![], looks }).collect();
     for from in 0..count {
         for to in 0..count {
             let (sender, receiver) = channel();
@@ -32,7 +32,7 @@ pub fn ranks(count: usize, threads: usize) -> Vec<Local> {
     ranks
 }
 
-impl Local {
+impl ThreadRank {
     /// Sends to a rank. A rank that has ended is detected when it is received from: its last message may name another lost rank.
     fn send(&self, to: usize, parcel: Parcel) {
         #[expect(clippy::let_underscore_must_use, reason = "the receiver detects that it has ended")]
@@ -51,7 +51,7 @@ impl Local {
     }
 }
 
-impl Ranks for Local {
+impl Ranks for ThreadRank {
     fn rank(&self) -> usize {
         self.rank
     }

@@ -103,7 +103,7 @@ impl dyn Ranks + '_ {
 
 /// Ranks that carry out simulations.
 #[derive(Clone, Copy, Debug)]
-pub enum Crew {
+pub enum RankBackend {
     /// One rank alone.
     One,
     /// Several threads of this process, each a rank with as many threads as the current pool.
@@ -112,38 +112,38 @@ pub enum Crew {
     Processes(fn() -> Box<dyn Ranks>),
 }
 
-impl Crew {
+impl RankBackend {
     /// Number of ranks.
     pub fn count(self) -> usize {
         match self {
-            Crew::One => 1,
-            Crew::Threads(count) => count,
-            Crew::Processes(join) => join().count(),
+            RankBackend::One => 1,
+            RankBackend::Threads(count) => count,
+            RankBackend::Processes(join) => join().count(),
         }
     }
 }
 
 thread_local! {
-    static CREW: Cell<Crew> = const { Cell::new(Crew::One) };
+    static CREW: Cell<RankBackend> = const { Cell::new(RankBackend::One) };
 }
 
 /// Ranks that carry out simulations started now on this thread.
-pub(crate) fn crew() -> Crew {
+pub(crate) fn crew() -> RankBackend {
     CREW.get()
 }
 
 /// Runs `work`; simulations that it starts on this thread are carried out by `crew`.
-pub fn over<R>(crew: Crew, work: impl FnOnce() -> R) -> R {
+pub fn over<R>(crew: RankBackend, work: impl FnOnce() -> R) -> R {
     /// Restores the previous crew, even after a panic.
-    struct Before(Crew);
+    struct RestoredBackend(RankBackend);
 
-    impl Drop for Before {
+    impl Drop for RestoredBackend {
         fn drop(&mut self) {
             CREW.set(self.0);
         }
     }
 
-    let _before = Before(CREW.replace(crew));
+    let _before = RestoredBackend(CREW.replace(crew));
     work()
 }
 

@@ -7,7 +7,7 @@ use crate::structure::{Block, widening};
 const FEWEST_BLOCKS: usize = 2;
 
 /// Arguments of a function, its means with error bars, and its values in each block.
-pub(super) struct Function {
+pub(super) struct BlockFunction {
     pub(super) over: Vec<Vec<f64>>,
     /// Means; NaN if fewer than two blocks have a value.
     pub(super) means: Vec<[f64; 2]>,
@@ -17,7 +17,7 @@ pub(super) struct Function {
     pub(super) length: u64,
 }
 
-impl Function {
+impl BlockFunction {
     /// Weighted mean over blocks at an index, with its error bar; none if there are too few blocks.
     pub(super) fn mean_at(&self, place: usize) -> Option<[f64; 2]> {
         self.weighted(|block| [block.means[place], block.weights[place]], place)

@@ -3,11 +3,11 @@
 use super::folder::{SCENE, THERMO};
 use super::identity::{first_difference, physics};
 use super::table::{TableError, TableReader};
-use crate::averages::{Averages, Rows, joined};
+use crate::averages::{AveragedRows, RunAverages, joined};
 use crate::io::{FileError, regular_file};
-use crate::method::{Methods, Quantity, observer};
+use crate::method::{Methods, ObservedQuantity, observer};
 use crate::quoted;
-use crate::reported::{Class, FilePlace, Reported};
+use crate::reported::{ErrorClass, FilePlace, Reported};
 use std::path::{Path, PathBuf};
 
 /// Longest scene (bytes).
@@ -108,16 +108,16 @@ pub enum FinishedError {
 }
 
 impl Reported for FinishedError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
             FinishedError::Table(error) => error.class(),
-            FinishedError::File(_) => Class::InputOutput,
-            FinishedError::NoMethod(_) | FinishedError::Damaged { .. } => Class::Input,
+            FinishedError::File(_) => ErrorClass::InputOutput,
+            FinishedError::NoMethod(_) | FinishedError::Damaged { .. } => ErrorClass::Input,
             FinishedError::OtherScene { .. }
             | FinishedError::Twice { .. }
             | FinishedError::OneNoise { .. }
             | FinishedError::NoStructure { .. }
-            | FinishedError::NothingShared { .. } => Class::Usage,
+            | FinishedError::NothingShared { .. } => ErrorClass::Usage,
         }
     }
 
@@ -144,18 +144,18 @@ impl Reported for FinishedError {
 
 /// Finished run, read from its files.
 #[derive(Clone, Debug)]
-pub struct Finished {
+pub struct FinishedRun {
     folder: PathBuf,
     scene: String,
-    rows: Rows,
+    rows: AveragedRows,
 }
 
-impl Finished {
+impl FinishedRun {
     /// Reads the files of a run in their present state.
     ///
     /// # Errors
     /// If its scene or its table cannot be read, or no method observes its columns.
-    pub fn read(folder: &Path, methods: Methods) -> Result<Finished, FinishedError> {
+    pub fn read(folder: &Path, methods: Methods) -> Result<FinishedRun, FinishedError> {
         let path = folder.join(THERMO);
         let table = TableReader::open(&path)?;
         let method = observer(methods, table.columns()).ok_or(FinishedError::NoMethod(path))?;
@@ -163,7 +163,7 @@ impl Finished {
         let path = folder.join(SCENE);
         let scene = regular_file::read(&path, LONGEST_SCENE).map_err(FileError::at(&path, "reading"))?;
         let scene = String::from_utf8_lossy(&scene).into_owned();
-        Ok(Finished { folder: folder.to_owned(), scene, rows })
+        Ok(FinishedRun { folder: folder.to_owned(), scene, rows })
     }
 
     /// Lines of the scene that determine the physics.
@@ -172,12 +172,12 @@ impl Finished {
     }
 
     /// Checks that another run has the same scene with another seed.
-    fn is_joined_by(&self, other: &Finished) -> Result<(), FinishedError> {
+    fn is_joined_by(&self, other: &FinishedRun) -> Result<(), FinishedError> {
         let (first, other_folder) = (self.folder.clone(), other.folder.clone());
         if self.physics() == other.physics() {
             return Err(FinishedError::Twice { first, other: other_folder });
         }
-        let without_seeds = |run: &Finished| -> Vec<String> {
+        let without_seeds = |run: &FinishedRun| -> Vec<String> {
             let is_seed = |line: &&str| ["seed = ", "noise_seed = "].iter().any(|it| line.starts_with(it));
             run.physics().into_iter().filter(|line| !is_seed(line)).map(str::to_owned).collect()
         };
@@ -186,7 +186,7 @@ impl Finished {
         if let Some([theirs, ours]) = first_difference(&theirs, &ours) {
             return Err(FinishedError::OtherScene { first, other: other_folder, ours, theirs });
         }
-        match [self, other].map(Finished::noise) {
+        match [self, other].map(FinishedRun::noise) {
             [Some((ours, is_stated)), Some((theirs, other_states))]
                 if ours == theirs && (is_stated || other_states) =>
             {
@@ -208,19 +208,22 @@ impl Finished {
 ///
 /// # Errors
 /// If two of them have different scenes, or are the same run.
-pub fn averages_of(runs: &[Finished]) -> Result<Averages, FinishedError> {
+pub fn averages_of(runs: &[FinishedRun]) -> Result<RunAverages, FinishedError> {
     for (place, run) in runs.iter().enumerate() {
         runs[..place].iter().try_for_each(|before| before.is_joined_by(run))?;
     }
-    Ok(joined(&runs.iter().map(|run| Averages::of(&run.rows)).collect::<Vec<_>>()))
+    Ok(joined(&runs.iter().map(|run| RunAverages::of(&run.rows)).collect::<Vec<_>>()))
 }
 
 /// Reads the rows of a table, whose first column is the step.
 ///
 /// # Errors
 /// If they cannot be read, or one is not a row of numbers.
-pub(super) fn rows_of(mut table: TableReader, quantities: &'static [Quantity]) -> Result<Rows, TableError> {
-    let mut rows = Rows::new(quantities);
+pub(super) fn rows_of(
+    mut table: TableReader,
+    quantities: &'static [ObservedQuantity],
+) -> Result<AveragedRows, TableError> {
+    let mut rows = AveragedRows::new(quantities);
     while let Some(row) = table.next_row()? {
         rows.add(&row[1..]);
     }

@@ -2,7 +2,7 @@
 
 use crate::io::FORMATS;
 use crate::io::checkpoint::NAME as CHECKPOINT;
-use crate::io::owned_folder::{FolderKind, Holds};
+use crate::io::owned_folder::{FolderContent, FolderKind};
 use crate::structure::OBSERVABLES;
 
 pub(super) use crate::io::owned_folder::OwnedFolder as RunFolder;
@@ -28,7 +28,7 @@ pub(super) const CHECKPOINTS: [&str; 2] = [PREVIOUS, CHECKPOINT];
 pub(super) const RUN: FolderKind = FolderKind {
     lock: "run.lock",
     list: LIST,
-    holds: Holds::Files { heading: "stripmine run files 1", is_own, is_shared: false },
+    holds: FolderContent::Files { heading: "stripmine run files 1", is_own, is_shared: false },
 };
 
 fn is_own(name: &str) -> bool {

@@ -2,7 +2,10 @@
 
 use super::structured::every;
 use crate::memory::in_words;
-use crate::method::{Beyond, Clock, Fact, Failure, Prepared, Purpose, START_TEMPERATURE, StepLimit, Until};
+use crate::method::{
+    Clock, Fact, LimitConsequence, PhysicsFailure, Prepared, START_TEMPERATURE, StartPurpose, StepLimit,
+    Until,
+};
 use crate::number::{counted, significant};
 use crate::scene::{DT, Warning};
 use serde_json::{Map, Value, json};
@@ -47,9 +50,9 @@ fn multiple(limit: &StepLimit) -> String {
 
 fn beyond(limit: &StepLimit) -> &'static str {
     match limit.beyond {
-        Beyond::Unstable => "errors grow beyond",
-        Beyond::Inaccurate => "inaccurate beyond",
-        Beyond::Unseen => "contacts are missed beyond",
+        LimitConsequence::Unstable => "errors grow beyond",
+        LimitConsequence::Inaccurate => "inaccurate beyond",
+        LimitConsequence::Unseen => "contacts are missed beyond",
     }
 }
 
@@ -121,7 +124,7 @@ fn nth(number: u64, what: &str) -> String {
 /// far.
 pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
     let schedule = prepared.schedule;
-    let Probed { each, row } = probed(prepared).ok()??;
+    let StartTimings { each, row } = probed(prepared).ok()??;
     let length = length(schedule.until);
     let rows = schedule.row_count().unwrap_or(0) as f64;
     let seconds = each.map(|each| each * length + row * rows);
@@ -176,7 +179,7 @@ fn gone(until: Until, clock: &Clock) -> f64 {
 }
 
 /// Timings of the start of a run.
-struct Probed {
+struct StartTimings {
     /// Wall time for each unit of the run's end (s): smallest, median and largest to be expected.
     each: [f64; 3],
     /// Wall time for a row of observables (s).
@@ -185,9 +188,9 @@ struct Probed {
 
 /// Times the start of a scene's run. Intervals too short to be timed are doubled. The first timed one is affected by cold memory and starting
 /// threads, and is dropped if others follow. None if the run has nothing to do.
-fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
+fn probed(prepared: &Prepared) -> Result<Option<StartTimings>, PhysicsFailure> {
     let until = prepared.schedule.until;
-    let mut simulation = prepared.start(Purpose::Run)?;
+    let mut simulation = prepared.start(StartPurpose::Run)?;
     let mut stretch = match until {
         Until::Steps(_) => Until::Steps(1),
         Until::Events(_) => Until::Events(1),
@@ -195,7 +198,7 @@ fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
     };
     let (begun, mut each) = (Instant::now(), vec![]);
     let is_late = AtomicBool::new(false);
-    thread::scope(|scope| -> Result<(), Failure> {
+    thread::scope(|scope| -> Result<(), PhysicsFailure> {
         let wait = || {
             thread::park_timeout(PATIENCE);
             is_late.store(true, Ordering::Relaxed);
@@ -236,7 +239,7 @@ fn probed(prepared: &Prepared) -> Result<Option<Probed>, Failure> {
     let mut rows: Vec<f64> = (0..3).map(|_| timed(|| simulation.observe())).collect();
     rows.sort_by(f64::total_cmp);
     let [Some(first), Some(last)] = [each.first(), each.last()] else { return Ok(None) };
-    Ok(Some(Probed { each: [first / MARGIN, each[each.len() / 2], last * MARGIN], row: rows[1] }))
+    Ok(Some(StartTimings { each: [first / MARGIN, each[each.len() / 2], last * MARGIN], row: rows[1] }))
 }
 
 fn timed<R>(work: impl FnOnce() -> R) -> f64 {

@@ -5,7 +5,7 @@ use super::folder::SUMMARY;
 use crate::averages::of_independent;
 use crate::io::{FileError, regular_file};
 use crate::quoted;
-use crate::structure::{OBSERVABLES, Observable};
+use crate::structure::{OBSERVABLES, StructureObservable};
 use serde::Serialize;
 use serde_json::Value;
 use std::io::ErrorKind;
@@ -18,7 +18,7 @@ const SAME: f64 = 1e-6;
 
 /// Structure function from one run or several.
 #[derive(Clone, Debug, Serialize)]
-pub struct Function {
+pub struct StructureFunction {
     /// Name of the observable.
     pub name: &'static str,
     /// Name of its file.
@@ -26,7 +26,7 @@ pub struct Function {
     /// Number of runs.
     pub runs: usize,
     /// Points: coordinates, mean, and half-width of the 95 % confidence interval, over blocks of one run, or over runs by Student's t.
-    pub points: Vec<Point>,
+    pub points: Vec<FunctionPoint>,
     /// Numbers that summarise it.
     pub headlines: Vec<Number>,
     /// Reservation about the values, or the reason why there are no headlines.
@@ -34,13 +34,13 @@ pub struct Function {
     pub doubt: Option<String>,
     /// Description of the function.
     #[serde(skip)]
-    pub observable: &'static Observable,
+    pub observable: &'static StructureObservable,
 }
 
 /// Value of a function at a point.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(into = "Vec<f64>")]
-pub struct Point {
+pub struct FunctionPoint {
     /// Coordinates: one or two.
     pub over: Vec<f64>,
     /// Value of the mean.
@@ -49,8 +49,8 @@ pub struct Point {
     pub bar: f64,
 }
 
-impl From<Point> for Vec<f64> {
-    fn from(Point { mut over, mean, bar }: Point) -> Self {
+impl From<FunctionPoint> for Vec<f64> {
+    fn from(FunctionPoint { mut over, mean, bar }: FunctionPoint) -> Self {
         over.extend([mean, bar]);
         over
     }
@@ -73,21 +73,23 @@ pub struct Number {
 ///
 /// # Errors
 /// [`FinishedError::File`] and [`FinishedError::Damaged`] if a file exists and cannot be read completely.
-pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<Function>, FinishedError> {
+pub fn functions_of<'f>(
+    folders: impl Iterator<Item = &'f Path>,
+) -> Result<Vec<StructureFunction>, FinishedError> {
     let folders: Vec<&Path> = folders.collect();
     let summaries: Vec<Value> = folders.iter().map(|folder| summary(folder)).collect::<Result<_, _>>()?;
-    let of = |observable: &'static Observable| {
-        let Observable { name, file, .. } = *observable;
+    let of = |observable: &'static StructureObservable| {
+        let StructureObservable { name, file, .. } = *observable;
         let runs = folders.len();
         let files = folders.iter().map(|folder| table(&folder.join(file), observable));
         let files: Option<Vec<Table>> = files.collect::<Result<_, _>>()?;
         let Some(files) = files else { return Ok(None) };
-        let files: Result<Vec<Vec<Point>>, String> = files.into_iter().map(Table::points).collect();
+        let files: Result<Vec<Vec<FunctionPoint>>, String> = files.into_iter().map(Table::points).collect();
         let mut points = match files {
             Ok(files) => joined(&files),
             Err(doubt) => {
                 let (points, headlines) = (vec![], vec![]);
-                return Ok(Some(Function {
+                return Ok(Some(StructureFunction {
                     name,
                     file,
                     runs,
@@ -104,15 +106,15 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<F
         }
         let headline = |name: &'static str, unit: &'static str| {
             let of = |summary: &Value| number(summary, observable.name, name);
-            let runs: Option<Vec<Point>> = summaries.iter().map(of).collect();
+            let runs: Option<Vec<FunctionPoint>> = summaries.iter().map(of).collect();
             let joined = joined(&runs?.into_iter().map(|run| vec![run]).collect::<Vec<_>>());
-            joined.first().map(|&Point { mean, bar, .. }| Number { name, unit, mean, bar })
+            joined.first().map(|&FunctionPoint { mean, bar, .. }| Number { name, unit, mean, bar })
         };
         let headlines = observable.headlines.iter();
         let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
         let doubt = doubt(&summaries, name);
         let is_known = !points.is_empty() || doubt.is_some();
-        Ok(is_known.then_some(Function { name, file, runs, points, headlines, doubt, observable }))
+        Ok(is_known.then_some(StructureFunction { name, file, runs, points, headlines, doubt, observable }))
     };
     OBSERVABLES.iter().filter_map(|observable| of(observable).transpose()).collect()
 }
@@ -123,8 +125,8 @@ pub fn functions_of<'f>(folders: impl Iterator<Item = &'f Path>) -> Result<Vec<F
 /// [`FinishedError::NoStructure`] if one has not; others as for [`functions_of`].
 pub fn function_of<'f>(
     folders: impl Iterator<Item = &'f Path> + Clone,
-    observable: &'static Observable,
-) -> Result<Function, FinishedError> {
+    observable: &'static StructureObservable,
+) -> Result<StructureFunction, FinishedError> {
     let found = functions_of(folders.clone())?.into_iter().find(|it| it.name == observable.name);
     found.ok_or_else(|| {
         let mut without = folders.clone().filter(|folder| !folder.join(observable.file).exists());
@@ -136,7 +138,7 @@ pub fn function_of<'f>(
 }
 
 /// Heading of a function's file, without its line end.
-fn heading(observable: &Observable) -> String {
+fn heading(observable: &StructureObservable) -> String {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
         unit => format!("{name} ({unit})"),
@@ -147,16 +149,16 @@ fn heading(observable: &Observable) -> String {
 }
 
 /// Formats a function as comma-separated values: coordinates, mean and error bar, without lines that lack a mean.
-pub(super) fn csv(observable: &Observable, points: &[Point]) -> String {
+pub(super) fn csv(observable: &StructureObservable, points: &[FunctionPoint]) -> String {
     let mut text = heading(observable) + "\n";
-    for Point { over, mean, bar } in points.iter().filter(|point| !point.mean.is_nan()) {
+    for FunctionPoint { over, mean, bar } in points.iter().filter(|point| !point.mean.is_nan()) {
         over.iter().for_each(|over| text.extend([format!("{over:?}"), ",".to_owned()]));
         text.push_str(&format!("{mean:?},{bar:?}\n"));
     }
     text
 }
 
-impl Function {
+impl StructureFunction {
     /// Function as comma-separated values.
     pub fn csv(&self) -> String {
         csv(self.observable, &self.points)
@@ -174,14 +176,14 @@ fn read(path: &Path, most: u64) -> Result<Option<Vec<u8>>, FinishedError> {
 
 /// Content of a function's file.
 enum Table {
-    Points(Vec<Point>),
+    Points(Vec<FunctionPoint>),
     /// Columns that another version of the program has written: the heading.
     OtherColumns(String),
 }
 
 impl Table {
     /// The points; a sentence if there are none that this version can read.
-    fn points(self) -> Result<Vec<Point>, String> {
+    fn points(self) -> Result<Vec<FunctionPoint>, String> {
         match self {
             Table::Points(points) => Ok(points),
             Table::OtherColumns(heading) => Err(format!(
@@ -193,17 +195,17 @@ impl Table {
 }
 
 /// Table in a file; `None` if the file does not exist.
-fn table(path: &Path, observable: &Observable) -> Result<Option<Table>, FinishedError> {
+fn table(path: &Path, observable: &StructureObservable) -> Result<Option<Table>, FinishedError> {
     let damaged = |line, expected| FinishedError::Damaged { file: path.to_owned(), line, expected };
     let Some(bytes) = read(path, LONGEST)? else { return Ok(None) };
     let text = String::from_utf8(bytes).map_err(|error| {
         let line = regular_file::line_that_is_not_text(error.as_bytes());
         damaged(line.unwrap_or(1), "text in UTF-8".to_owned())
     })?;
-    let point = |line: &str| -> Option<Point> {
+    let point = |line: &str| -> Option<FunctionPoint> {
         let mut over: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
         let (bar, mean) = (over.pop()?, over.pop()?);
-        (over.len() == observable.over.len()).then_some(Point { over, mean, bar })
+        (over.len() == observable.over.len()).then_some(FunctionPoint { over, mean, bar })
     };
     let mut lines = (1..).zip(text.split_inclusive('\n'));
     let whole = |line: &str| line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned());
@@ -235,10 +237,10 @@ fn summary(folder: &Path) -> Result<Value, FinishedError> {
 }
 
 /// Headline of an observable, as a point without coordinates.
-fn number(summary: &Value, observable: &str, name: &str) -> Option<Point> {
+fn number(summary: &Value, observable: &str, name: &str) -> Option<FunctionPoint> {
     let find = |list: &Value, name: &str| list.as_array()?.iter().find(|it| it["name"] == name).cloned();
     let found = find(&find(&summary["structure"], observable)?["headlines"], name)?;
-    Some(Point { over: vec![], mean: found["mean"].as_f64()?, bar: found["bar"].as_f64()? })
+    Some(FunctionPoint { over: vec![], mean: found["mean"].as_f64()?, bar: found["bar"].as_f64()? })
 }
 
 /// Reservation about an observable from one run or several.
@@ -254,14 +256,14 @@ fn doubt(summaries: &[Value], observable: &str) -> Option<String> {
 }
 
 /// Joins the points that all runs have.
-fn joined(runs: &[Vec<Point>]) -> Vec<Point> {
+fn joined(runs: &[Vec<FunctionPoint>]) -> Vec<FunctionPoint> {
     let [first, others @ ..] = runs else { return vec![] };
     if others.is_empty() {
         return first.clone();
     }
-    let of = |Point { over, mean, .. }: &Point| {
-        let there = |run: &Vec<Point>| {
-            let close = |point: &&Point| {
+    let of = |FunctionPoint { over, mean, .. }: &FunctionPoint| {
+        let there = |run: &Vec<FunctionPoint>| {
+            let close = |point: &&FunctionPoint| {
                 let mut places = point.over.iter().zip(over);
                 places.all(|(other, over)| (other - over).abs() <= SAME * over.abs())
             };
@@ -269,7 +271,7 @@ fn joined(runs: &[Vec<Point>]) -> Vec<Point> {
         };
         let means: Option<Vec<f64>> = std::iter::once(Some(*mean)).chain(others.iter().map(there)).collect();
         let [mean, bar] = of_independent(&means?)?;
-        Some(Point { over: over.clone(), mean, bar })
+        Some(FunctionPoint { over: over.clone(), mean, bar })
     };
     first.iter().filter_map(of).collect()
 }
@@ -283,14 +285,14 @@ mod tests {
     fn only_points_of_all_runs_are_joined() {
         let runs =
             [vec![[0.5, 1.0], [1.5, 7.0]], vec![[0.5, 2.0], [1.0, 9.0], [1.5, 7.0]], vec![[0.5 + 1e-9, 3.0]]];
-        let point = |[over, mean]: [f64; 2]| Point { over: vec![over], mean, bar: 0.1 };
+        let point = |[over, mean]: [f64; 2]| FunctionPoint { over: vec![over], mean, bar: 0.1 };
         let runs = runs.map(|run| run.into_iter().map(point).collect::<Vec<_>>());
-        let [Point { over, mean, bar }] = &joined(&runs)[..] else { panic!() };
+        let [FunctionPoint { over, mean, bar }] = &joined(&runs)[..] else { panic!() };
         assert!(
             over[..] == [0.5] && (mean - 2.0).abs() < 1e-12 && (bar - 4.3027 / 3_f64.sqrt()).abs() < 1e-3
         );
         assert_eq!(joined(&runs[..2]).len(), 2);
         assert_eq!(joined(&runs[..1]), runs[0]);
-        assert_eq!(joined(&[]), vec![] as Vec<Point>);
+        assert_eq!(joined(&[]), vec![] as Vec<FunctionPoint>);
     }
 }

@@ -1,8 +1,8 @@
 //! End of a run at a target error of a mean.
 
-use crate::averages::{Average, Estimate, Outcome, Rows};
-use crate::method::{Prepared, Quantity};
-use crate::scene::{Target, Width};
+use crate::averages::{Average, AverageOutcome, AveragedRows, Estimate};
+use crate::method::{ObservedQuantity, Prepared};
+use crate::scene::{MeanTarget, Width};
 
 /// Number of rows at the first check of the mean.
 const FIRST: u64 = 32;
@@ -13,8 +13,8 @@ const FEWEST_SAMPLES: f64 = 30.0;
 
 /// Target error of a run, with the state of its checks.
 #[derive(Clone, Debug)]
-pub(super) struct Goal {
-    target: Target,
+pub(super) struct RunGoal {
+    target: MeanTarget,
     place: usize,
     /// Number of rows at the last check, and true if the target was reached then.
     looked: (u64, bool),
@@ -22,7 +22,7 @@ pub(super) struct Goal {
 
 /// Present error of a mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Known {
+pub(super) struct TargetProgress {
     /// Half-width of the 95 % confidence interval, in the terms of the target; none without a mean.
     pub(super) error: Option<Width>,
     /// Estimated time at which the target is reached (time); none if unknown.
@@ -30,21 +30,21 @@ pub(super) struct Known {
     pub(super) is_enough: bool,
 }
 
-impl Goal {
+impl RunGoal {
     /// Goal of a scene, if it has one.
-    pub(super) fn of(prepared: &Prepared, quantities: &[Quantity]) -> Option<Goal> {
+    pub(super) fn of(prepared: &Prepared, quantities: &[ObservedQuantity]) -> Option<RunGoal> {
         let target = prepared.target.clone()?;
         let place = quantities.iter().position(|quantity| quantity.name == target.quantity)?;
-        Some(Goal { target, place, looked: (0, false) })
+        Some(RunGoal { target, place, looked: (0, false) })
     }
 
     /// Target error.
-    pub(super) fn target(&self) -> &Target {
+    pub(super) fn target(&self) -> &MeanTarget {
         &self.target
     }
 
     /// Returns true if the target is reached. It is checked at certain numbers of rows, which are the same for any number of sessions.
-    pub(super) fn is_reached(&mut self, rows: &Rows) -> bool {
+    pub(super) fn is_reached(&mut self, rows: &AveragedRows) -> bool {
         let count = rows.count();
         if self.looked.0 != count {
             self.looked = (count, is_looked_at(count) && self.known(rows).is_enough);
@@ -53,21 +53,23 @@ impl Goal {
     }
 
     /// Present error of the mean.
-    pub(super) fn known(&self, rows: &Rows) -> Known {
+    pub(super) fn known(&self, rows: &AveragedRows) -> TargetProgress {
         match Average::of(rows, self.place).outcome {
-            Outcome::Mean(found) => self.of_mean(&found),
-            Outcome::TooShort { enough_at, .. } => {
-                Known { error: None, enough_at: Some(enough_at), is_enough: false }
+            AverageOutcome::Mean(found) => self.of_mean(&found),
+            AverageOutcome::TooShort { enough_at, .. } => {
+                TargetProgress { error: None, enough_at: Some(enough_at), is_enough: false }
             }
             // A quantity that has been constant may vary later.
-            Outcome::Constant { .. }
-            | Outcome::Undefined
-            | Outcome::Changing { .. }
-            | Outcome::Kept { .. } => Known { error: None, enough_at: None, is_enough: false },
+            AverageOutcome::Constant { .. }
+            | AverageOutcome::Undefined
+            | AverageOutcome::Changing { .. }
+            | AverageOutcome::Kept { .. } => {
+                TargetProgress { error: None, enough_at: None, is_enough: false }
+            }
         }
     }
 
-    fn of_mean(&self, found: &Estimate) -> Known {
+    fn of_mean(&self, found: &Estimate) -> TargetProgress {
         let error = self.target.error.same_of(found.mean, found.bar);
         let wanted = match (self.target.error, error) {
             (Width::Percent(wanted), Width::Percent(found)) => found / wanted,
@@ -77,7 +79,7 @@ impl Goal {
         // The squared error is inversely proportional to the averaged time.
         let longer = wanted.powi(2).max(FEWEST_SAMPLES / found.independent_samples).max(1.0);
         let has_samples = found.independent_samples >= FEWEST_SAMPLES;
-        Known {
+        TargetProgress {
             error: has_samples.then_some(error),
             enough_at: Some(found.equilibrated_at + found.span * longer),
             is_enough: has_samples && self.target.error.holds(found.mean, found.bar),

@@ -3,12 +3,12 @@
 use super::RunError;
 use super::folder::{EVENTS, RunFolder, THERMO};
 use super::structured::chosen;
-use crate::io::checkpoint::Counter;
-use crate::io::growing_file::Mark;
+use crate::io::checkpoint::CheckpointCounter;
+use crate::io::growing_file::FileMark;
 use crate::io::opened::{OpenSink, SinkKind};
 use crate::io::output_format::{FrameWriting, OutputFormat};
 use crate::io::run_moment::{RunHeader, RunMoment};
-use crate::io::sink::{Due, TextSink};
+use crate::io::sink::{TextSink, WriteOccasion};
 use crate::io::table_file::{EventRows, ObservedRows};
 use crate::io::{FORMATS, FileError};
 use crate::method::{Clock, Prepared};
@@ -40,7 +40,7 @@ impl GrowingSink {
     /// Adds a moment, unless it is that of the last frame.
     fn add(&mut self, moment: &RunMoment<'_>, clock: Clock) -> Result<(), FileError> {
         let Some(sink) = &mut self.sink else { return Ok(()) };
-        let is_frame = self.kind.due == Due::Frame;
+        let is_frame = self.kind.due == WriteOccasion::Frame;
         if is_frame && self.last == Some(clock) {
             return Ok(());
         }
@@ -52,44 +52,44 @@ impl GrowingSink {
 }
 
 /// Growing files of a run.
-pub(super) struct Growing(Vec<GrowingSink>);
+pub(super) struct GrowingFiles(Vec<GrowingSink>);
 
 /// Returns the names of the files that a run creates, at the start or at its end.
 pub(super) fn names(prepared: &Prepared) -> Vec<&'static str> {
-    let begun = Growing::of(prepared).0.into_iter().filter(GrowingSink::is_begun).map(|it| it.name);
+    let begun = GrowingFiles::of(prepared).0.into_iter().filter(GrowingSink::is_begun).map(|it| it.name);
     let last = FORMATS.iter().filter(|it| matches!(it.writing, FrameWriting::Last(_)));
     let last = last.filter(|format| prepared.output.asks_for(format)).map(|format| format.file);
     begun.chain(last).chain(chosen(&prepared.output).map(|observable| observable.file)).collect()
 }
 
 /// Counters of a checkpoint.
-type Counters = BTreeMap<String, Counter>;
+type Counters = BTreeMap<String, CheckpointCounter>;
 
 fn count(kept: &Counters, name: &str) -> Result<u64, String> {
     match kept.get(name) {
-        Some(Counter::Count(count)) => Ok(*count),
+        Some(CheckpointCounter::Count(count)) => Ok(*count),
         _ => Err(format!("the counter {name} is missing")),
     }
 }
 
 /// Returns the mark of a file.
-fn mark_of(kept: &Counters, file: &str) -> Result<Mark, String> {
+fn mark_of(kept: &Counters, file: &str) -> Result<FileMark, String> {
     let checksum = count(kept, &format!("{file} checksum"))?;
     let checksum =
         u32::try_from(checksum).map_err(|_| format!("the checksum of {file} has more than 32 bits"))?;
-    Ok(Mark { bytes: count(kept, &format!("{file} bytes"))?, checksum })
+    Ok(FileMark { bytes: count(kept, &format!("{file} bytes"))?, checksum })
 }
 
 /// Returns the moment of a file's last frame.
 fn last_of(kept: &Counters, file: &str) -> Option<Clock> {
     let [steps, time, events] = last_names(file);
-    let Some(Counter::Sum(time)) = kept.get(&time) else { return None };
+    let Some(CheckpointCounter::Sum(time)) = kept.get(&time) else { return None };
     Some(Clock { steps: count(kept, &steps).ok()?, time: *time, events: count(kept, &events).ok()? })
 }
 
-impl Growing {
+impl GrowingFiles {
     /// Lists all files that may grow, without creating one.
-    fn of(prepared: &Prepared) -> Growing {
+    fn of(prepared: &Prepared) -> GrowingFiles {
         let rows = GrowingSink::new(THERMO, SinkKind::of::<TextSink<ObservedRows>>(), [true; 2]);
         let of_format = |format: &OutputFormat| match format.writing {
             FrameWriting::Growing(kind) => {
@@ -100,7 +100,7 @@ impl Growing {
         };
         let has_events = prepared.event_columns.is_some();
         let events = GrowingSink::new(EVENTS, SinkKind::of::<TextSink<EventRows>>(), [false, has_events]);
-        Growing([rows].into_iter().chain(FORMATS.iter().filter_map(of_format)).chain([events]).collect())
+        GrowingFiles([rows].into_iter().chain(FORMATS.iter().filter_map(of_format)).chain([events]).collect())
     }
 
     /// Creates the files that a scene requests.
@@ -108,8 +108,8 @@ impl Growing {
         folder: &RunFolder,
         prepared: &Prepared,
         header: &RunHeader,
-    ) -> Result<Growing, RunError> {
-        let mut growing = Growing::of(prepared);
+    ) -> Result<GrowingFiles, RunError> {
+        let mut growing = GrowingFiles::of(prepared);
         growing.begin_missing(folder, header)?;
         Ok(growing)
     }
@@ -129,8 +129,8 @@ impl Growing {
         header: &RunHeader,
         (kept, notes): (&Counters, &mut Vec<String>),
         foreign: impl Fn(String) -> RunError,
-    ) -> Result<Growing, RunError> {
-        let mut growing = Growing::of(prepared);
+    ) -> Result<GrowingFiles, RunError> {
+        let mut growing = GrowingFiles::of(prepared);
         for file in &mut growing.0 {
             let mark = match mark_of(kept, file.name) {
                 Ok(mark) => mark,
@@ -157,7 +157,12 @@ impl Growing {
     }
 
     /// Adds a moment to the requested files in which something is due.
-    pub(super) fn add(&mut self, due: Due, moment: &RunMoment<'_>, clock: Clock) -> Result<(), RunError> {
+    pub(super) fn add(
+        &mut self,
+        due: WriteOccasion,
+        moment: &RunMoment<'_>,
+        clock: Clock,
+    ) -> Result<(), RunError> {
         let mut asked = self.0.iter_mut().filter(|it| it.kind.due == due && it.is_asked);
         Ok(asked.try_for_each(|it| it.add(moment, clock))?)
     }
@@ -178,11 +183,15 @@ impl Growing {
         let mut counters = Counters::new();
         for GrowingSink { name, sink, last, .. } in &mut self.0 {
             let Some(sink) = sink else { continue };
-            let Mark { bytes, checksum } = sink.mark()?;
-            counters.insert(format!("{name} bytes"), Counter::Count(bytes));
-            counters.insert(format!("{name} checksum"), Counter::Count(checksum.into()));
+            let FileMark { bytes, checksum } = sink.mark()?;
+            counters.insert(format!("{name} bytes"), CheckpointCounter::Count(bytes));
+            counters.insert(format!("{name} checksum"), CheckpointCounter::Count(checksum.into()));
             let Some(Clock { steps, time, events }) = *last else { continue };
-            let moment = [Counter::Count(steps), Counter::Sum(time), Counter::Count(events)];
+            let moment = [
+                CheckpointCounter::Count(steps),
+                CheckpointCounter::Sum(time),
+                CheckpointCounter::Count(events),
+            ];
             counters.extend(last_names(name).into_iter().zip(moment));
         }
         Ok(counters)
@@ -221,8 +230,8 @@ mod tests {
             Ok(())
         }
 
-        fn mark(&mut self) -> Result<Mark, FileError> {
-            Ok(Mark { bytes: self.0.len() as u64, checksum: 0 })
+        fn mark(&mut self) -> Result<FileMark, FileError> {
+            Ok(FileMark { bytes: self.0.len() as u64, checksum: 0 })
         }
     }
 
@@ -231,7 +240,7 @@ mod tests {
     #[test]
     fn frames_are_written_once() {
         let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
-        let mut growing = Growing::of(&prepared);
+        let mut growing = GrowingFiles::of(&prepared);
         growing.0[1].sink = Some(Box::new(Numbers(vec![])));
         let header = RunHeader::default();
         let at = |steps, time, events| Clock { steps, time, events };
@@ -245,13 +254,17 @@ mod tests {
             (at(0, 2.0, 9), 5),
         ] {
             let moment = RunMoment::new(&header, &Nothing, (clock.steps, clock.number(), clock.time));
-            growing.add(Due::Frame, &moment, clock).unwrap();
+            growing.add(WriteOccasion::Frame, &moment, clock).unwrap();
             let counters = growing.mark().unwrap();
-            assert_eq!(counters["trajectory.xyz bytes"], Counter::Count(count), "{clock:?}");
-            assert_eq!(counters["trajectory.xyz last events"], Counter::Count(clock.events), "{clock:?}");
+            assert_eq!(counters["trajectory.xyz bytes"], CheckpointCounter::Count(count), "{clock:?}");
+            assert_eq!(
+                counters["trajectory.xyz last events"],
+                CheckpointCounter::Count(clock.events),
+                "{clock:?}"
+            );
         }
         let third = RunMoment::new(&header, &Nothing, (3, 3, 3.0));
-        growing.add(Due::Frame, &third, at(3, 3.0, 0)).unwrap();
-        assert_eq!(growing.mark().unwrap()["trajectory.xyz last"], Counter::Count(0));
+        growing.add(WriteOccasion::Frame, &third, at(3, 3.0, 0)).unwrap();
+        assert_eq!(growing.mark().unwrap()["trajectory.xyz last"], CheckpointCounter::Count(0));
     }
 }

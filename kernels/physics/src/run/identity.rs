@@ -1,12 +1,12 @@
 //! Identity of a run: its scene, its discs, and the program as far as it determines the bits.
 
 use super::folder::SCENE;
-use super::{Job, RunError};
-use crate::io::checkpoint::{Checkpoint, Counter};
+use super::{RunError, RunJob};
+use crate::io::checkpoint::{Checkpoint, CheckpointCounter};
 use crate::method::Clock;
 use crate::origin::Origin;
-use crate::particles::{Kind, Particle, Particles};
-use crate::scene::{Values, Vocabulary};
+use crate::particles::{Particle, ParticleKind, Particles};
+use crate::scene::{SceneValues, Vocabulary};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,7 +18,7 @@ pub(super) const BITS: u64 = 4;
 
 /// Scene, discs and program that started a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Identity {
+pub(super) struct RunIdentity {
     /// Scene with every value (TOML).
     pub(super) scene: String,
     /// Digest of all initial discs.
@@ -29,9 +29,9 @@ pub(super) struct Identity {
     program: Origin,
 }
 
-impl Identity {
+impl RunIdentity {
     /// Identity of a job whose run is in `folder`.
-    pub(super) fn of(Job { prepared, program, .. }: Job<'_>, folder: &Path) -> Identity {
+    pub(super) fn of(RunJob { prepared, program, .. }: RunJob<'_>, folder: &Path) -> RunIdentity {
         let discs = digest(prepared.particles());
         let file = prepared.start_file.as_deref();
         let scene = match file {
@@ -39,7 +39,7 @@ impl Identity {
             Some(file) => with_start_file(&prepared.scene, &seen_from(folder, file), &discs),
         };
         let file = file.map(|file| file.display().to_string());
-        Identity { scene, discs, file, program: program.clone() }
+        RunIdentity { scene, discs, file, program: program.clone() }
     }
 
     /// Entries for a checkpoint.
@@ -87,7 +87,7 @@ impl Identity {
             dirty: said("dirty") == "true",
             target: said("target"),
         };
-        let same_bits = checkpoint.counters.get("bits") == Some(&Counter::Count(BITS));
+        let same_bits = checkpoint.counters.get("bits") == Some(&CheckpointCounter::Count(BITS));
         if !same_bits && !other_version {
             let (theirs, ours) = (program(&theirs), program(here));
             return Err(RunError::OtherVersion { folder: folder.to_owned(), theirs, ours });
@@ -126,7 +126,7 @@ fn digest(particles: &Particles) -> String {
         particles.all()
     {
         sum.update(id.to_le_bytes());
-        sum.update([u8::from(kind == Kind::Wall)]);
+        sum.update([u8::from(kind == ParticleKind::Wall)]);
         [x, y, z, u, v, w, angle, omega, radius, mass]
             .iter()
             .for_each(|value| sum.update(value.to_bits().to_le_bytes()));
@@ -137,7 +137,7 @@ fn digest(particles: &Particles) -> String {
 /// Choices of the run in `folder` that differ from those of `ours`, the resolved scene, for keys that are `auto` in the scene; as overrides, so
 /// that a resumed run keeps them.
 pub fn chosen_otherwise(
-    values: &Values,
+    values: &SceneValues,
     vocabulary: &'static Vocabulary,
     ours: &str,
     folder: &Path,
@@ -146,7 +146,7 @@ pub fn chosen_otherwise(
     let known = [vocabulary];
     // A scene that cannot be read is refused by the later comparison.
     let (Ok(theirs), Ok(ours)) =
-        (Values::load(&file, &[], &known), Values::parse("scene", ours, &[], &known))
+        (SceneValues::load(&file, &[], &known), SceneValues::parse("scene", ours, &[], &known))
     else {
         return vec![];
     };

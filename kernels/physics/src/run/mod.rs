@@ -19,10 +19,10 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use finished::{Finished, FinishedError, averages_of};
-pub use functions::{Function, Number, Point, function_of, functions_of};
+pub use finished::{FinishedError, FinishedRun, averages_of};
+pub use functions::{FunctionPoint, Number, StructureFunction, function_of, functions_of};
 pub use identity::chosen_otherwise;
-pub use structured::Summed;
+pub use structured::StructureSummary;
 pub use summary::Summary;
 pub use table::{TableError, TableReader};
 
@@ -30,22 +30,22 @@ use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::lock::Lock;
 use crate::io::{FileError, FolderError};
-use crate::method::{Clock, Failure, Prepared, Purpose, Quantity, Until};
+use crate::method::{Clock, ObservedQuantity, PhysicsFailure, Prepared, StartPurpose, Until};
 use crate::number::significant;
 use crate::origin::Origin;
 use crate::quoted;
-use crate::reported::{Class, FilePlace, Reported};
-use crate::scene::{SceneErrors, Target, Width};
+use crate::reported::{ErrorClass, FilePlace, Reported};
+use crate::scene::{MeanTarget, SceneErrors, Width};
 use crate::signals;
 use folder::RUN;
-use recorder::Recorder;
+use recorder::RunRecorder;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Treatment of a folder that contains a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
+pub enum ExistingRun {
     /// Refuse to write.
     Refuse,
     /// Resume from the newest checkpoint; start if there is none.
@@ -137,16 +137,16 @@ pub enum RunError {
     )]
     Physics {
         /// Failure of the physics.
-        failure: Failure,
+        failure: PhysicsFailure,
         /// Path of the file with the last frame.
         snapshot: PathBuf,
     },
     /// The physics broke a precondition before anything was written.
     #[error(transparent)]
-    Start(Failure),
+    Start(PhysicsFailure),
     /// A rank was lost: the state of that step is unknown and in no file.
     #[error(transparent)]
-    Lost(Failure),
+    Lost(PhysicsFailure),
     /// The mean that should end the run did not reach its target error.
     #[error(
         "the run reached its latest end, {bound}, but the mean of {} is {}, not to ± {} (95 %); results are in {}{}",
@@ -160,7 +160,7 @@ pub enum RunError {
         /// Folder of the run.
         folder: PathBuf,
         /// Target error.
-        target: Target,
+        target: MeanTarget,
         /// Latest end.
         bound: Until,
         /// Half-width of the 95 % confidence interval, if there is a mean.
@@ -194,7 +194,7 @@ pub enum RunError {
 }
 
 impl Reported for RunError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
             RunError::Scene(errors) => errors.class(),
             RunError::Physics { failure, .. } | RunError::Start(failure) | RunError::Lost(failure) => {
@@ -204,17 +204,17 @@ impl Reported for RunError {
             | RunError::FewerSteps { .. }
             | RunError::OtherScene { .. }
             | RunError::OtherDiscs { .. }
-            | RunError::OtherVersion { .. } => Class::Usage,
-            RunError::Foreign { .. } => Class::Checkpoint,
-            RunError::Unreached { .. } => Class::Precondition,
+            | RunError::OtherVersion { .. } => ErrorClass::Usage,
+            RunError::Foreign { .. } => ErrorClass::Checkpoint,
+            RunError::Unreached { .. } => ErrorClass::Precondition,
             RunError::Folder(error) => error.class(),
             RunError::Rows(error) => error.class(),
-            RunError::Checkpoint(error) if error.is_corrupt() => Class::Checkpoint,
-            RunError::Growing(error) if error.is_damage() => Class::Checkpoint,
+            RunError::Checkpoint(error) if error.is_corrupt() => ErrorClass::Checkpoint,
+            RunError::Growing(error) if error.is_damage() => ErrorClass::Checkpoint,
             RunError::Checkpoint(_)
             | RunError::Growing(_)
             | RunError::CheckpointWriting(_)
-            | RunError::File(_) => Class::InputOutput,
+            | RunError::File(_) => ErrorClass::InputOutput,
         }
     }
 
@@ -268,11 +268,11 @@ pub enum Ending {
 
 /// Scene to run, with its context.
 #[derive(Clone, Copy)]
-pub struct Job<'j> {
+pub struct RunJob<'j> {
     /// Prepared scene.
     pub prepared: &'j Prepared,
     /// Quantities of its method.
-    pub quantities: &'static [Quantity],
+    pub quantities: &'static [ObservedQuantity],
     /// Program that runs it, for the record.
     pub program: &'j Origin,
 }
@@ -285,15 +285,15 @@ const LONGEST_STRIDE: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// If the folder belongs to others, or contains a run that must stay.
-pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
+pub fn begins(folder: &Path, existing: ExistingRun) -> Result<bool, RunError> {
     let holds = RUN.listed(folder)?.is_some_and(|names| !names.is_empty());
     if holds {
         drop(Lock::take(&folder.join(RUN.lock))?);
     }
     match existing {
-        Existing::Refuse if holds => Err(RunError::Exists(folder.to_owned())),
-        Existing::Resume { .. } => Ok(!holds),
-        Existing::Refuse | Existing::Overwrite => Ok(true),
+        ExistingRun::Refuse if holds => Err(RunError::Exists(folder.to_owned())),
+        ExistingRun::Resume { .. } => Ok(!holds),
+        ExistingRun::Refuse | ExistingRun::Overwrite => Ok(true),
     }
 }
 
@@ -303,9 +303,9 @@ pub fn begins(folder: &Path, existing: Existing) -> Result<bool, RunError> {
 /// # Errors
 /// [`RunError`]; after a failure of the physics, the folder has the state of that step and a summary of the failure.
 pub fn run(
-    job: Job<'_>,
+    job: RunJob<'_>,
     folder: &Path,
-    existing: Existing,
+    existing: ExistingRun,
     interrupted: &AtomicBool,
     mut progress: impl FnMut(u64, u64),
     notice: impl FnMut(&str),
@@ -314,10 +314,10 @@ pub fn run(
     prepared.memory.fits("scene")?;
     // Refusals come before expensive work.
     begins(folder, existing)?;
-    let mut simulation = prepared.start(Purpose::Run).map_err(RunError::Start)?;
+    let mut simulation = prepared.start(StartPurpose::Run).map_err(RunError::Start)?;
     // An interrupted start would leave a folder without a checkpoint; a resumed run has one.
-    let held = (!matches!(existing, Existing::Resume { .. })).then(signals::hold);
-    let mut recorder = Recorder::open(folder, existing, job, simulation.as_mut())?;
+    let held = (!matches!(existing, ExistingRun::Resume { .. })).then(signals::hold);
+    let mut recorder = RunRecorder::open(folder, existing, job, simulation.as_mut())?;
     let _held = held.unwrap_or_else(signals::hold);
     recorder.new_notes().iter().map(String::as_str).for_each(notice);
     let until = prepared.schedule.until;

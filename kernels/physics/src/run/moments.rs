@@ -1,17 +1,17 @@
 //! Constants and moments of a run, for its files.
 
-use crate::averages::Rows;
+use crate::averages::AveragedRows;
 use crate::io::run_moment::{FramesEvery, RunHeader, RunMoment};
-use crate::method::{Every, Kind, Prepared, Quantity, Simulation};
+use crate::method::{Every, ObservedQuantity, Prepared, QuantityKind, Simulation};
 
 /// Returns the constants of a run.
 pub(super) fn header_of(
     prepared: &Prepared,
-    quantities: &'static [Quantity],
+    quantities: &'static [ObservedQuantity],
     simulation: &dyn Simulation,
 ) -> RunHeader {
     let domain = prepared.domain;
-    let of_frames = |(_, quantity): &(usize, &Quantity)| quantity.kind != Kind::Time;
+    let of_frames = |(_, quantity): &(usize, &ObservedQuantity)| quantity.kind != QuantityKind::Time;
     RunHeader {
         cell: domain.lengths(),
         origin: domain.corner(),
@@ -33,7 +33,7 @@ pub(super) fn header_of(
 pub(super) fn moment_of<'m>(
     simulation: &'m dyn Simulation,
     header: &'m RunHeader,
-    rows: &'m Rows,
+    rows: &'m AveragedRows,
 ) -> RunMoment<'m> {
     let clock = simulation.clock();
     let numbers = (clock.steps, clock.number(), clock.time);

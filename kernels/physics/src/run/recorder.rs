@@ -2,21 +2,22 @@
 
 use super::finished::{LONGEST_SCENE, rows_of};
 use super::folder::{ALWAYS, CHECKPOINTS, RUN, RunFolder, SCENE, SUMMARY, THERMO, needed};
-use super::goal::{Goal, Known};
-use super::growing::{Growing, names};
-use super::identity::{BITS, Identity, same_scene};
+use super::goal::{RunGoal, TargetProgress};
+use super::growing::{GrowingFiles, names};
+use super::identity::{BITS, RunIdentity, same_scene};
 use super::moments::{header_of, moment_of};
-use super::structured::Structured;
+use super::structured::StructureSampler;
 use super::table::TableReader;
-use super::{Existing, Job, RunError, Summary};
-use crate::averages::{Averages, Rows};
-use crate::io::checkpoint::{Checkpoint, Counter, Latest, NAME, read_latest};
+use super::{ExistingRun, RunError, RunJob, Summary};
+use crate::averages::{AveragedRows, RunAverages};
+use crate::io::checkpoint::{Checkpoint, CheckpointCounter, LatestCheckpoint, NAME, read_latest};
 use crate::io::output_format::{FrameWriting, OutputFormat};
 use crate::io::run_moment::RunHeader;
-use crate::io::sink::Due;
+use crate::io::sink::WriteOccasion;
 use crate::io::{FORMATS, FileError, regular_file};
 use crate::method::{
-    Clock, Every, Failure, FailureKind, Quantity, Schedule, Simulation, Snapshot, Until, is_sound,
+    Clock, Every, FailureKind, ObservedQuantity, PhysicsFailure, Schedule, Simulation, Snapshot, Until,
+    is_sound,
 };
 use crate::quoted;
 use crate::scene::Output;
@@ -29,23 +30,23 @@ use std::time::Instant;
 const EVENT_COUNT: &str = "events";
 
 /// Writer of a run's files.
-pub(super) struct Recorder {
-    identity: Identity,
+pub(super) struct RunRecorder {
+    identity: RunIdentity,
     schedule: Schedule,
     output: Output,
     header: RunHeader,
-    quantities: &'static [Quantity],
+    quantities: &'static [ObservedQuantity],
     /// Times at which the next row, snapshot and checkpoint are due.
     due: [Option<Until>; 3],
-    growing: Growing,
+    growing: GrowingFiles,
     /// Dropped after what grows in it: until the last frame is written, no other process may have the folder.
     folder: RunFolder,
     /// Structure functions.
-    structured: Structured,
+    structured: StructureSampler,
     /// Rows of observables, those of earlier sessions included.
-    rows: Rows,
+    rows: AveragedRows,
     /// Target error that ends the run, if there is one.
-    goal: Option<Goal>,
+    goal: Option<RunGoal>,
     /// Unusual findings, in the order of the run's sessions.
     notes: Vec<String>,
     /// Number of notes of this session.
@@ -56,17 +57,17 @@ pub(super) struct Recorder {
     unsaved_since: Instant,
 }
 
-impl Recorder {
+impl RunRecorder {
     /// Starts a run in a folder, or resumes the one in it.
     ///
     /// # Errors
     /// [`RunError`] if the folder belongs to others, or its run cannot be resumed.
     pub(super) fn open(
         path: &Path,
-        existing: Existing,
-        job: Job<'_>,
+        existing: ExistingRun,
+        job: RunJob<'_>,
         simulation: &mut dyn Simulation,
-    ) -> Result<Recorder, RunError> {
+    ) -> Result<RunRecorder, RunError> {
         let folder = RunFolder::open(path, RUN, &[])?;
         let mut notes = Vec::new();
         if !folder.is_locked() {
@@ -76,31 +77,31 @@ impl Recorder {
             ));
         }
         match existing {
-            Existing::Refuse if folder.has_own() => Err(RunError::Exists(path.to_owned())),
-            Existing::Resume { other_version } if folder.has_own() => match read_latest(path)? {
-                Some(latest) => Recorder::resume(folder, latest, job, simulation, other_version, notes),
+            ExistingRun::Refuse if folder.has_own() => Err(RunError::Exists(path.to_owned())),
+            ExistingRun::Resume { other_version } if folder.has_own() => match read_latest(path)? {
+                Some(latest) => RunRecorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
-                    begun_with(&folder, &Identity::of(job, path).scene)?;
+                    begun_with(&folder, &RunIdentity::of(job, path).scene)?;
                     notes.push("started again: there was no checkpoint yet".to_owned());
-                    Recorder::begin(folder, job, simulation, notes)
+                    RunRecorder::begin(folder, job, simulation, notes)
                 }
             },
-            _ => Recorder::begin(folder, job, simulation, notes),
+            _ => RunRecorder::begin(folder, job, simulation, notes),
         }
     }
 
     /// Creates the files and writes the initial state.
     fn begin(
         mut folder: RunFolder,
-        job: Job<'_>,
+        job: RunJob<'_>,
         simulation: &mut dyn Simulation,
         notes: Vec<String>,
-    ) -> Result<Recorder, RunError> {
+    ) -> Result<RunRecorder, RunError> {
         folder.clear(&CHECKPOINTS)?;
         folder.claim(ALWAYS.into_iter().chain(names(job.prepared)), false)?;
         let header = header_of(job.prepared, job.quantities, simulation);
-        let growing = Growing::begin(&folder, job.prepared, &header)?;
-        let mut recorder = Recorder::with(folder, job, (growing, header), &simulation.clock(), notes);
+        let growing = GrowingFiles::begin(&folder, job.prepared, &header)?;
+        let mut recorder = RunRecorder::with(folder, job, (growing, header), &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
         if let Some(failure) = recorder.thermo(simulation)? {
@@ -112,16 +113,16 @@ impl Recorder {
 
     fn with(
         folder: RunFolder,
-        job: Job<'_>,
-        (growing, header): (Growing, RunHeader),
+        job: RunJob<'_>,
+        (growing, header): (GrowingFiles, RunHeader),
         clock: &Clock,
         notes: Vec<String>,
-    ) -> Recorder {
-        let Job { prepared, quantities, .. } = job;
-        let identity = Identity::of(job, folder.path());
+    ) -> RunRecorder {
+        let RunJob { prepared, quantities, .. } = job;
+        let identity = RunIdentity::of(job, folder.path());
         let schedule = prepared.schedule;
         let due = [schedule.rows, schedule.snapshots, schedule.checkpoints].map(|every| every.next(clock));
-        Recorder {
+        RunRecorder {
             folder,
             identity,
             schedule,
@@ -130,9 +131,9 @@ impl Recorder {
             quantities,
             due,
             growing,
-            structured: Structured::new(prepared),
-            rows: Rows::new(quantities),
-            goal: Goal::of(prepared, quantities),
+            structured: StructureSampler::new(prepared),
+            rows: AveragedRows::new(quantities),
+            goal: RunGoal::of(prepared, quantities),
             notes,
             new_notes: 0,
             checkpointed: None,
@@ -143,24 +144,24 @@ impl Recorder {
     /// Resumes from a checkpoint and truncates the files at it. Nothing is changed before everything is verified.
     fn resume(
         mut folder: RunFolder,
-        latest: Latest,
-        job: Job<'_>,
+        latest: LatestCheckpoint,
+        job: RunJob<'_>,
         simulation: &mut dyn Simulation,
         other_version: bool,
         session: Vec<String>,
-    ) -> Result<Recorder, RunError> {
-        let Job { prepared, quantities, .. } = job;
+    ) -> Result<RunRecorder, RunError> {
+        let RunJob { prepared, quantities, .. } = job;
         let newest = folder.file(NAME);
         let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
         let mut checkpoint = latest.checkpoint;
         let events = match checkpoint.counters.remove(EVENT_COUNT) {
-            Some(Counter::Count(events)) => events,
+            Some(CheckpointCounter::Count(events)) => events,
             _ => 0,
         };
         let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
         let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
         let mut notes =
-            Identity::of(job, folder.path()).check(folder.path(), &checkpoint, clock, other_version)?;
+            RunIdentity::of(job, folder.path()).check(folder.path(), &checkpoint, clock, other_version)?;
         notes.extend(session);
         if latest.file != newest {
             notes.push(format!(
@@ -179,8 +180,8 @@ impl Recorder {
         }
         let header = header_of(prepared, quantities, simulation);
         let mut growing =
-            Growing::resume(&folder, prepared, &header, (&checkpoint.counters, &mut notes), foreign)?;
-        let structured = Structured::resumed(prepared, &checkpoint, &mut notes).map_err(foreign)?;
+            GrowingFiles::resume(&folder, prepared, &header, (&checkpoint.counters, &mut notes), foreign)?;
+        let structured = StructureSampler::resumed(prepared, &checkpoint, &mut notes).map_err(foreign)?;
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
             columns: std::mem::take(&mut checkpoint.columns),
@@ -195,7 +196,7 @@ impl Recorder {
         let last = FORMATS.iter().filter(|format| matches!(format.writing, FrameWriting::Last(_)));
         let mut of_the_end = last.map(|format| format.file).chain(OBSERVABLES.iter().map(|it| it.file));
         of_the_end.try_for_each(|name| folder.remove_own(name))?;
-        let mut recorder = Recorder::with(folder, job, (growing, header), &clock, notes);
+        let mut recorder = RunRecorder::with(folder, job, (growing, header), &clock, notes);
         recorder.structured = structured;
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
@@ -205,8 +206,8 @@ impl Recorder {
     }
 
     /// Averages over the rows so far.
-    pub(super) fn averages(&self) -> Averages {
-        Averages::of(&self.rows)
+    pub(super) fn averages(&self) -> RunAverages {
+        RunAverages::of(&self.rows)
     }
 
     /// Returns true if the target error is reached.
@@ -215,7 +216,7 @@ impl Recorder {
     }
 
     /// Goal and present error; none if there is no goal, or it is reached.
-    pub(super) fn missed_goal(&self) -> Option<(&Goal, Known)> {
+    pub(super) fn missed_goal(&self) -> Option<(&RunGoal, TargetProgress)> {
         let goal = self.goal.as_ref()?;
         let known = goal.known(&self.rows);
         (!known.is_enough).then_some((goal, known))
@@ -239,7 +240,7 @@ impl Recorder {
     pub(super) fn write_what_is_due(
         &mut self,
         simulation: &mut dyn Simulation,
-    ) -> Result<Option<Failure>, RunError> {
+    ) -> Result<Option<PhysicsFailure>, RunError> {
         let clock = simulation.clock();
         let [rows, snapshots, mut checkpoints] =
             self.due.map(|due| due.is_some_and(|moment| moment.has_come(&clock)));
@@ -260,7 +261,7 @@ impl Recorder {
         if snapshots {
             self.due[1] = snapshot.next(&clock);
             self.structured.snapshot(&moment);
-            self.growing.add(Due::Frame, &moment, clock)?;
+            self.growing.add(WriteOccasion::Frame, &moment, clock)?;
         }
         whole(simulation, ())?;
         // A checkpoint needs the memory of its frame.
@@ -277,11 +278,11 @@ impl Recorder {
         let events = simulation.take_events();
         let mut moment = moment_of(simulation, &self.header, &self.rows);
         moment.events = &events;
-        self.growing.add(Due::Events, &moment, simulation.clock())
+        self.growing.add(WriteOccasion::Events, &moment, simulation.clock())
     }
 
     /// Adds a row of observables, unless one of them is not finite though it must be.
-    fn thermo(&mut self, simulation: &mut dyn Simulation) -> Result<Option<Failure>, RunError> {
+    fn thermo(&mut self, simulation: &mut dyn Simulation) -> Result<Option<PhysicsFailure>, RunError> {
         if let Err(failure) = simulation.check() {
             return Ok(Some(failure));
         }
@@ -293,7 +294,7 @@ impl Recorder {
         }
         let mut moment = moment_of(simulation, &self.header, &self.rows);
         moment.row = Some(&row);
-        self.growing.add(Due::Row, &moment, clock)?;
+        self.growing.add(WriteOccasion::Row, &moment, clock)?;
         self.rows.add(&row);
         Ok(None)
     }
@@ -301,7 +302,7 @@ impl Recorder {
     /// Adds a frame to the requested files that do not have it yet.
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let moment = moment_of(simulation, &self.header, &self.rows);
-        let added = self.growing.add(Due::Frame, &moment, simulation.clock());
+        let added = self.growing.add(WriteOccasion::Frame, &moment, simulation.clock());
         whole(simulation, added)?
     }
 
@@ -334,8 +335,8 @@ impl Recorder {
             return Ok(());
         }
         let mut counters = self.growing.mark()?;
-        counters.insert("bits".to_owned(), Counter::Count(BITS));
-        counters.insert(EVENT_COUNT.to_owned(), Counter::Count(clock.events));
+        counters.insert("bits".to_owned(), CheckpointCounter::Count(BITS));
+        counters.insert(EVENT_COUNT.to_owned(), CheckpointCounter::Count(clock.events));
         let mut snapshot = whole(simulation, simulation.snapshot())?;
         self.structured.keep(&mut snapshot);
         counters.extend(snapshot.counters);
@@ -364,7 +365,7 @@ impl Recorder {
         let summary = whole(simulation, summary)?;
         self.checkpoint(simulation)?;
         let moment = moment_of(simulation, &self.header, &self.rows);
-        self.growing.add(Due::Frame, &moment, simulation.clock())?;
+        self.growing.add(WriteOccasion::Frame, &moment, simulation.clock())?;
         self.growing.mark()?;
         whole(simulation, ())?;
         for format in FORMATS.iter().filter(|format| self.output.asks_for(format)) {
@@ -396,11 +397,11 @@ fn whole<T>(simulation: &dyn Simulation, seen: T) -> Result<T, RunError> {
 }
 
 /// Failure of a sum over all particles that overflows.
-fn overflow(at: Clock, quantity: &'static str, value: f64) -> Failure {
+fn overflow(at: Clock, quantity: &'static str, value: f64) -> PhysicsFailure {
     let what = format!("{quantity} is {value}, which is not a finite number");
     let remedy = "the units make masses, speeds or stiffness too large for double precision; choose units in which they are \
                   nearer to 1";
-    Failure::new(FailureKind::OVERFLOW, what, remedy).at(at).with([(quantity, value)])
+    PhysicsFailure::new(FailureKind::OVERFLOW, what, remedy).at(at).with([(quantity, value)])
 }
 
 /// Refuses another scene than that of a run without a checkpoint.

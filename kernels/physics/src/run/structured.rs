@@ -8,52 +8,52 @@
 //! (`structure::strides`), never measured.
 
 use super::RunError;
-use super::block_means::Function;
+use super::block_means::BlockFunction;
 use super::folder::RunFolder;
-use super::functions::{Number, Point, csv};
-use crate::io::checkpoint::{Checkpoint, Column};
+use super::functions::{FunctionPoint, Number, csv};
+use crate::io::checkpoint::{Checkpoint, CheckpointColumn};
 use crate::io::run_moment::RunMoment;
 use crate::method::{Every, Prepared, Snapshot};
-use crate::particles::States;
+use crate::particles::GrainStates;
 use crate::scene::Output;
 use crate::structure::{
-    Asks, Block, Blocks, Headline, Look, Motion, OBSERVABLES, Observable, PairForces, Seen, Setting, Verdict,
-    Whole, strides,
+    AveragedFunction, Block, Blocks, FunctionReliability, Headline, MotionHistory, OBSERVABLES, PairForces,
+    SampleData, SamplingKind, StructureObservable, StructureSample, StructureSetting, strides,
 };
 use serde::Serialize;
 use std::io::Write as _;
 
 /// Structure functions of a run.
-pub(super) struct Structured {
-    setting: Setting,
+pub(super) struct StructureSampler {
+    setting: StructureSetting,
     /// Strides of sampled rows and snapshots.
     strides: [u64; 2],
     /// Rows and snapshots so far, without those at the start.
     passed: [u64; 2],
     /// Interval between samples of rows and of snapshots (steps or time).
     spacings: [f64; 2],
-    sums: Vec<Sum>,
+    sums: Vec<ObservableSums>,
     /// Samples of snapshots, if an observable needs them.
-    look: Option<Look>,
+    look: Option<StructureSample>,
     /// Pair forces, if an observable needs them.
     forces: Option<PairForces>,
     /// Samples at earlier rows, if an observable needs them, and the present state.
-    motion: Option<(Motion, States)>,
+    motion: Option<(MotionHistory, GrainStates)>,
     /// True if discs are followed across periodic sides, and the initial number of particles.
     follows: bool,
     particles: usize,
 }
 
 /// Sums of an observable.
-struct Sum {
-    observable: &'static Observable,
+struct ObservableSums {
+    observable: &'static StructureObservable,
     looks: u64,
     blocks: Blocks,
 }
 
 /// Summary of an observable.
 #[derive(Clone, Debug, Serialize)]
-pub struct Summed {
+pub struct StructureSummary {
     /// Name of the observable.
     pub name: &'static str,
     /// File with its values in the run's folder.
@@ -77,39 +77,44 @@ pub struct Summed {
 const SHARE: f64 = 0.05;
 
 /// Observables that a scene requests, in the order of their list.
-pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static Observable> + use<'_> {
+pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static StructureObservable> + use<'_> {
     OBSERVABLES.iter().filter(|observable| output.structure.iter().any(|name| name == observable.name))
 }
 
 /// Strides of sampled rows and snapshots.
 pub(super) fn every(prepared: &Prepared) -> [u64; 2] {
     let setting = setting_of(prepared);
-    let asked: Vec<&Observable> = chosen(&prepared.output).collect();
+    let asked: Vec<&StructureObservable> = chosen(&prepared.output).collect();
     let share = prepared.output.structure_share.unwrap_or(SHARE);
     let schedule = prepared.schedule;
     let work = [schedule.rows, schedule.snapshots].map(|every| spacing(every) * prepared.model.work());
     strides(&asked, &setting, prepared.particles().grain_count(), share, work)
 }
 
-fn setting_of(prepared: &Prepared) -> Setting {
-    let of = if prepared.model.has_open_top() { Setting::with_open_top } else { Setting::new };
+fn setting_of(prepared: &Prepared) -> StructureSetting {
+    let of =
+        if prepared.model.has_open_top() { StructureSetting::with_open_top } else { StructureSetting::new };
     of(prepared.domain, prepared.particles())
 }
 
-impl Structured {
+impl StructureSampler {
     /// Empty sums for the observables of a scene.
-    pub(super) fn new(prepared: &Prepared) -> Structured {
+    pub(super) fn new(prepared: &Prepared) -> StructureSampler {
         let grains = prepared.particles().grains();
         let setting = setting_of(prepared);
-        let asked: Vec<&Observable> = chosen(&prepared.output).collect();
+        let asked: Vec<&StructureObservable> = chosen(&prepared.output).collect();
         let strides = every(prepared);
         let spacings = [prepared.schedule.rows, prepared.schedule.snapshots].map(spacing);
-        let stands = asked.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
-        let moves = asked.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
-        let sum = |observable| Sum { observable, looks: 0, blocks: Blocks::new(width(observable, &setting)) };
-        let look = stands.then(|| Look::new(setting, prepared.particles(), asked.iter().copied()));
-        let meets = look.as_ref().is_some_and(|look| look.asks(Asks::Forces));
-        Structured {
+        let stands = asked.iter().any(|observable| matches!(observable.seen, SamplingKind::Once { .. }));
+        let moves = asked.iter().any(|observable| matches!(observable.seen, SamplingKind::Twice { .. }));
+        let sum = |observable| ObservableSums {
+            observable,
+            looks: 0,
+            blocks: Blocks::new(width(observable, &setting)),
+        };
+        let look = stands.then(|| StructureSample::new(setting, prepared.particles(), asked.iter().copied()));
+        let meets = look.as_ref().is_some_and(|look| look.asks(SampleData::Forces));
+        StructureSampler {
             setting,
             strides,
             passed: [0; 2],
@@ -117,7 +122,7 @@ impl Structured {
             sums: chosen(&prepared.output).map(sum).collect(),
             look,
             forces: prepared.model.pair_forces().filter(|_| meets),
-            motion: moves.then(|| (Motion::new(grains.len()), States::of(grains))),
+            motion: moves.then(|| (MotionHistory::new(grains.len()), GrainStates::of(grains))),
             follows: prepared.output.follows_motion() && prepared.domain.periodic().contains(&true),
             particles: prepared.particles().len(),
         }
@@ -131,17 +136,18 @@ impl Structured {
         prepared: &Prepared,
         checkpoint: &Checkpoint,
         notes: &mut Vec<String>,
-    ) -> Result<Structured, String> {
-        let mut structured = Structured::new(prepared);
+    ) -> Result<StructureSampler, String> {
+        let mut structured = StructureSampler::new(prepared);
         let there = Snapshot { counters: checkpoint.counters.clone(), columns: vec![] };
         let column = |name: &str| match checkpoint.column(&key(name)) {
-            Some(Column::F64(values)) => Some(values.as_slice()),
+            Some(CheckpointColumn::F64(values)) => Some(values.as_slice()),
             _ => None,
         };
         let at_same_moments =
             SPACINGS.map(|name| there.sum(&key(name)).ok()) == structured.spacings.map(Some);
         let wrong = |name: &str| format!("its data of the structure ({name}) are not of this scene");
-        let is_known = |observable: &Observable| at_same_moments && column(observable.name).is_some();
+        let is_known =
+            |observable: &StructureObservable| at_same_moments && column(observable.name).is_some();
         // Functions of two moments are resumed together or not at all.
         let motion_is_known = structured.moving().all(|sum| is_known(sum.observable));
         if at_same_moments {
@@ -150,8 +156,8 @@ impl Structured {
         for sum in &mut structured.sums {
             let name = sum.observable.name;
             let goes_on = match sum.observable.seen {
-                Seen::Once { .. } => is_known(sum.observable),
-                Seen::Twice { .. } => motion_is_known,
+                SamplingKind::Once { .. } => is_known(sum.observable),
+                SamplingKind::Twice { .. } => motion_is_known,
             };
             let Some(values) = column(name).filter(|_| goes_on) else {
                 notes.push(format!("{name} is averaged from here on"));
@@ -167,15 +173,15 @@ impl Structured {
             let looks = there.count(&key(MOTION))?;
             let [first, last] = MOTIONS.map(|name| there.sum(&key(name)));
             let discs = prepared.particles().grain_count();
-            let restored = Motion::restored(discs, looks, [first?, last?], values);
+            let restored = MotionHistory::restored(discs, looks, [first?, last?], values);
             *motion = restored.ok_or_else(|| wrong(MOTION))?;
         }
         Ok(structured)
     }
 
     /// Sums of functions of two moments.
-    fn moving(&self) -> impl Iterator<Item = &Sum> {
-        self.sums.iter().filter(|sum| matches!(sum.observable.seen, Seen::Twice { .. }))
+    fn moving(&self) -> impl Iterator<Item = &ObservableSums> {
+        self.sums.iter().filter(|sum| matches!(sum.observable.seen, SamplingKind::Twice { .. }))
     }
 
     /// Counts a row or a snapshot; returns true if it is sampled.
@@ -189,7 +195,7 @@ impl Structured {
         if self.motion.is_none() || !self.passes(ROWS) {
             return;
         }
-        let Structured { setting, sums, motion, .. } = self;
+        let StructureSampler { setting, sums, motion, .. } = self;
         let Some((motion, states)) = motion else { return };
         states.forget();
         moment.per_particle.states(states);
@@ -202,9 +208,9 @@ impl Structured {
         if !moment.per_particle.is_whole() {
             return;
         }
-        let of = |sum: &Sum| match sum.observable.seen {
-            Seen::Twice { of, .. } => Some(of),
-            Seen::Once { .. } => None,
+        let of = |sum: &ObservableSums| match sum.observable.seen {
+            SamplingKind::Twice { of, .. } => Some(of),
+            SamplingKind::Once { .. } => None,
         };
         motion.look(states.rows(), moment.time, |look, place, means| {
             for sum in &mut *sums {
@@ -240,7 +246,7 @@ impl Structured {
             look.meet(particles, forces);
         }
         for sum in &mut self.sums {
-            if let Seen::Once { .. } = sum.observable.seen {
+            if let SamplingKind::Once { .. } = sum.observable.seen {
                 let [values, weights] = look.values(sum.observable);
                 for (place, (value, weight)) in values.into_iter().zip(weights).enumerate() {
                     if !value.is_nan() {
@@ -254,10 +260,10 @@ impl Structured {
 
     /// Adds all sums to a checkpoint.
     pub(super) fn keep(&self, snapshot: &mut Snapshot) {
-        for Sum { observable: Observable { name, .. }, looks, blocks } in &self.sums {
+        for ObservableSums { observable: StructureObservable { name, .. }, looks, blocks } in &self.sums {
             snapshot.add_count(&key(&format!("{name} looks")), *looks);
             snapshot.add_count(&key(&format!("{name} length")), blocks.length());
-            snapshot.add_column(&key(name), Column::F64(blocks.column()));
+            snapshot.add_column(&key(name), CheckpointColumn::F64(blocks.column()));
         }
         if !self.sums.is_empty() {
             let spacings = SPACINGS.into_iter().zip(self.spacings);
@@ -269,16 +275,16 @@ impl Structured {
             snapshot.add_count(&key(MOTION), motion.looks());
             let numbers = MOTIONS.into_iter().zip(motion.ends());
             numbers.for_each(|(name, number)| snapshot.add_sum(&key(name), number));
-            snapshot.add_column(&key(MOTION), Column::F64(motion.column()));
+            snapshot.add_column(&key(MOTION), CheckpointColumn::F64(motion.column()));
         }
     }
 
     /// Writes the file of each observable: coordinates, mean and error bar.
     pub(super) fn write(&self, folder: &RunFolder) -> Result<(), RunError> {
         for sum in &self.sums {
-            let Function { over, means, .. } = self.function(sum);
-            let point = |(over, [mean, bar]): (Vec<f64>, [f64; 2])| Point { over, mean, bar };
-            let points: Vec<Point> = over.into_iter().zip(means).map(point).collect();
+            let BlockFunction { over, means, .. } = self.function(sum);
+            let point = |(over, [mean, bar]): (Vec<f64>, [f64; 2])| FunctionPoint { over, mean, bar };
+            let points: Vec<FunctionPoint> = over.into_iter().zip(means).map(point).collect();
             let text = csv(sum.observable, &points);
             folder.write(sum.observable.file, |out| out.write_all(text.as_bytes()))?;
         }
@@ -286,19 +292,19 @@ impl Structured {
     }
 
     /// Entries of `summary.json`.
-    pub(super) fn summed(&self) -> Vec<Summed> {
+    pub(super) fn summed(&self) -> Vec<StructureSummary> {
         self.sums.iter().map(|sum| self.summed_of(sum)).collect()
     }
 
-    fn summed_of(&self, sum: &Sum) -> Summed {
-        let Observable { name, file, headlines, judged, seen, .. } = *sum.observable;
+    fn summed_of(&self, sum: &ObservableSums) -> StructureSummary {
+        let StructureObservable { name, file, headlines, judged, seen, .. } = *sum.observable;
         let function = self.function(sum);
         let over: Vec<f64> = function.over.iter().map(|place| length(place)).collect();
         let every = self.strides[match seen {
-            Seen::Once { .. } => SNAPSHOTS,
-            Seen::Twice { .. } => ROWS,
+            SamplingKind::Once { .. } => SNAPSHOTS,
+            SamplingKind::Twice { .. } => ROWS,
         }];
-        let whole = Whole {
+        let whole = AveragedFunction {
             setting: &self.setting,
             over: &over,
             means: &function.means,
@@ -306,7 +312,7 @@ impl Structured {
             mean: &|of, place| function.mean(|block| of(&block.means), place),
         };
         let verdict = match function.missing(sum.looks, every) {
-            Some(why) => Verdict::None(why),
+            Some(why) => FunctionReliability::None(why),
             None => judged(&whole),
         };
         let headline = |headline: &Headline| {
@@ -317,11 +323,11 @@ impl Structured {
                 .filter(|it| !it.mean.is_nan())
         };
         let (headlines, doubt) = match verdict {
-            Verdict::Sound => (headlines, None),
-            Verdict::Doubt(why) => (headlines, Some(why)),
-            Verdict::None(why) => (&[][..], Some(why)),
+            FunctionReliability::Sound => (headlines, None),
+            FunctionReliability::Doubt(why) => (headlines, Some(why)),
+            FunctionReliability::None(why) => (&[][..], Some(why)),
         };
-        Summed {
+        StructureSummary {
             name,
             file,
             looks: sum.looks,
@@ -334,20 +340,20 @@ impl Structured {
     }
 
     /// Function of an observable, as far as it has values.
-    fn function(&self, sum: &Sum) -> Function {
+    fn function(&self, sum: &ObservableSums) -> BlockFunction {
         let length = sum.blocks.length();
         let (over, lags, last) = match sum.observable.seen {
-            Seen::Once { over, .. } => (over.places(&self.setting), vec![], 0),
-            Seen::Twice { .. } => {
+            SamplingKind::Once { over, .. } => (over.places(&self.setting), vec![], 0),
+            SamplingKind::Twice { .. } => {
                 // Lags are at most a block, so that blocks share only their ends, and the last block is dropped.
                 let motion = self.motion.iter().flat_map(|(motion, _)| motion.times());
-                let short = Motion::lags().zip(motion).filter(|(lag, _)| *lag <= length);
+                let short = MotionHistory::lags().zip(motion).filter(|(lag, _)| *lag <= length);
                 let (lags, times) = short.map(|(lag, time)| (lag, vec![time])).unzip();
                 (times, lags, 1)
             }
         };
         let blocks = sum.blocks.second_half(sum.looks, last);
-        let mut function = Function { over, means: vec![], blocks, lags, length };
+        let mut function = BlockFunction { over, means: vec![], blocks, lags, length };
         let is_density = sum.observable.is_density_of_places();
         let means = (0..function.over.len()).map_while(|place| {
             let [mean, bar] = function.mean_at(place)?;
@@ -392,9 +398,9 @@ fn spacing(every: Every) -> f64 {
 }
 
 /// Number of values of an observable, those for headlines only included.
-fn width(observable: &Observable, setting: &Setting) -> usize {
+fn width(observable: &StructureObservable, setting: &StructureSetting) -> usize {
     match observable.seen {
-        Seen::Once { over, further, .. } => over.places(setting).len() + further,
-        Seen::Twice { .. } => Motion::lags().len(),
+        SamplingKind::Once { over, further, .. } => over.places(setting).len() + further,
+        SamplingKind::Twice { .. } => MotionHistory::lags().len(),
     }
 }

@@ -1,9 +1,9 @@
 //! Summary that a run writes at its end.
 
-use super::structured::Summed;
-use super::{Job, forecast};
-use crate::averages::Averages;
-use crate::method::{Clock, Failure, RunWarning, Simulation};
+use super::structured::StructureSummary;
+use super::{RunJob, forecast};
+use crate::averages::RunAverages;
+use crate::method::{Clock, PhysicsFailure, RunWarning, Simulation};
 use crate::origin::{Origin, host, moment};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -40,13 +40,13 @@ pub struct Summary {
     /// Unusual findings over the run's sessions: another version of the program, an older checkpoint and the like; set when it is written.
     pub notes: Vec<String>,
     /// Failure of the physics that stopped the run, if any.
-    #[serde(serialize_with = "Failure::in_json")]
-    pub failure: Option<Failure>,
+    #[serde(serialize_with = "PhysicsFailure::in_json")]
+    pub failure: Option<PhysicsFailure>,
     /// Mean of each quantity with its error.
-    pub averages: Averages,
+    pub averages: RunAverages,
     /// Structure functions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub structure: Vec<Summed>,
+    pub structure: Vec<StructureSummary>,
     /// Number of steps done.
     pub steps: u64,
     /// Simulated time.
@@ -70,12 +70,12 @@ pub struct Summary {
 
 impl Summary {
     pub(super) fn of(
-        Job { prepared, program, .. }: Job<'_>,
+        RunJob { prepared, program, .. }: RunJob<'_>,
         simulation: &dyn Simulation,
-        averages: Averages,
+        averages: RunAverages,
         from: Clock,
         seconds: f64,
-        failure: Option<&Failure>,
+        failure: Option<&PhysicsFailure>,
     ) -> Summary {
         let clock = simulation.clock();
         let mut warnings: Vec<String> = prepared.warnings.iter().map(ToString::to_string).collect();

@@ -3,7 +3,7 @@
 use crate::io::{FileError, regular_file};
 use crate::method::is_sound;
 use crate::quoted;
-use crate::reported::{Class, FilePlace, Reported};
+use crate::reported::{ErrorClass, FilePlace, Reported};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -30,10 +30,10 @@ pub enum TableError {
 }
 
 impl Reported for TableError {
-    fn class(&self) -> Class {
+    fn class(&self) -> ErrorClass {
         match self {
-            TableError::NoTable { .. } => Class::Input,
-            TableError::File(_) => Class::InputOutput,
+            TableError::NoTable { .. } => ErrorClass::Input,
+            TableError::File(_) => ErrorClass::InputOutput,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Tests of runs in every format of the list; a new format is tested by its entry there.
 
-use super::{Existing, Job, run};
+use super::{ExistingRun, RunJob, run};
 use crate::io::FORMATS;
 use crate::method::{METHODS, load};
 use crate::origin::Origin;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 fn files_after(
     folder: &Path,
     is_asked: bool,
-    existing: Existing,
+    existing: ExistingRun,
     stop: Option<u64>,
 ) -> BTreeMap<String, Vec<u8>> {
     let asked = FORMATS.iter().map(|format| format!("output.{}={is_asked}", format.key));
@@ -26,7 +26,7 @@ fn files_after(
         dirty: false,
         target: "here".to_owned(),
     };
-    let job = Job { prepared: &prepared, quantities: entry.quantities, program: &program };
+    let job = RunJob { prepared: &prepared, quantities: entry.quantities, program: &program };
     let is_stopped = AtomicBool::new(false);
     let progress = |done, _| is_stopped.store(stop == Some(done), Ordering::Relaxed);
     run(job, folder, existing, &is_stopped, progress, |_| {}).unwrap();
@@ -40,15 +40,15 @@ fn files_after(
 fn formats_are_begun_resumed_and_removed() {
     let folder = tempfile::tempdir().unwrap();
     let [whole, parts] = ["whole", "parts"].map(|name| folder.path().join(name));
-    let expected = files_after(&whole, true, Existing::Refuse, None);
+    let expected = files_after(&whole, true, ExistingRun::Refuse, None);
     assert_eq!(expected.len(), FORMATS.len());
     assert!(expected.values().all(|bytes| !bytes.is_empty()));
-    let go_on = Existing::Resume { other_version: false };
+    let go_on = ExistingRun::Resume { other_version: false };
     for stop in [Some(23), Some(24), Some(41), None] {
         let found = files_after(&parts, true, go_on, stop);
         assert!(stop.is_some() || found == expected, "other bytes than those of one piece");
     }
-    let left = files_after(&parts, false, Existing::Overwrite, None);
+    let left = files_after(&parts, false, ExistingRun::Overwrite, None);
     let always = FORMATS.iter().filter(|format| format.is_default).map(|format| format.file);
     assert_eq!(left.keys().collect::<Vec<_>>(), always.collect::<Vec<_>>());
 }

@@ -1,18 +1,18 @@
 //! Binding of a section's fields to its keys, one function for reading and writing.
 
 use super::key_set::{KeySet, SECTIONS};
-use super::keys::{Fallback, Key, Value};
+use super::keys::{Fallback, Key, KeyValue};
 use super::start_file::SharedFrame;
-use super::target::Target;
-use super::values::Values;
+use super::target::MeanTarget;
+use super::values::SceneValues;
 use super::{SceneError, SceneErrors};
-use crate::input::Reason;
+use crate::input::MistakeKind;
 use crate::words::Words;
 
 /// Visitor of the fields of a section: reads them from a text, or writes them.
 pub trait Binding {
     /// Binds a field with this value to a key, and returns the new value of the field, if it changes.
-    fn meet(&mut self, key: &'static Key, value: Option<Value>) -> Option<Value>;
+    fn meet(&mut self, key: &'static Key, value: Option<KeyValue>) -> Option<KeyValue>;
 
     /// True if fields take their values from a text.
     fn reads(&self) -> bool {
@@ -36,15 +36,15 @@ macro_rules! define_bindings {
             $(
                 /// Binds a field that always has a value.
                 pub fn $method(&mut self, key: &'static Key, field: &mut $ty) {
-                    if let Some(Value::$variant(value)) = self.meet(key, Some(Value::$variant(field.clone()))) {
+                    if let Some(KeyValue::$variant(value)) = self.meet(key, Some(KeyValue::$variant(field.clone()))) {
                         *field = value;
                     }
                 }
 
                 /// Binds an optional field.
                 pub fn $optional(&mut self, key: &'static Key, field: &mut Option<$ty>) {
-                    match self.meet(key, field.clone().map(Value::$variant)) {
-                        Some(Value::$variant(value)) => *field = Some(value),
+                    match self.meet(key, field.clone().map(KeyValue::$variant)) {
+                        Some(KeyValue::$variant(value)) => *field = Some(value),
                         _ => {}
                     }
                 }
@@ -63,7 +63,7 @@ define_bindings! {
     pairs, pairs_if_any, Pairs, Vec<[f64; 2]>;
     numbers, numbers_if_any, Numbers, Vec<f64>;
     rows, rows_if_any, Rows, Vec<Vec<f64>>;
-    target, target_if_any, Target, Target;
+    target, target_if_any, Target, MeanTarget;
     words, words_if_any, Words, Vec<String>;
 }
 
@@ -86,15 +86,15 @@ impl dyn Binding + '_ {
 }
 
 /// Binding that reads fields from values.
-pub struct Read<'v> {
-    values: &'v Values,
+pub struct ReadBinding<'v> {
+    values: &'v SceneValues,
     missing: Vec<SceneError>,
 }
 
-impl<'v> Read<'v> {
+impl<'v> ReadBinding<'v> {
     /// Reads from values that have passed their rules.
-    pub fn new(values: &'v Values) -> Self {
-        Read { values, missing: Vec::new() }
+    pub fn new(values: &'v SceneValues) -> Self {
+        ReadBinding { values, missing: Vec::new() }
     }
 
     /// Checks that every field had its value.
@@ -106,18 +106,19 @@ impl<'v> Read<'v> {
     }
 }
 
-impl Binding for Read<'_> {
-    fn meet(&mut self, key: &'static Key, _: Option<Value>) -> Option<Value> {
+impl Binding for ReadBinding<'_> {
+    fn meet(&mut self, key: &'static Key, _: Option<KeyValue>) -> Option<KeyValue> {
         let implied = self.values.implying(key).any(|other| self.values.gives(other));
         if implied {
-            return self.values.choice(key).map(Value::Word);
+            return self.values.choice(key).map(KeyValue::Word);
         }
         let value = self.values.value(key);
         if value.is_none()
             && key.fallback == Fallback::Required
             && self.values.applies(key.used) != Some(false)
         {
-            let error = self.values.spot(key).error(Reason::Missing, format!("`{}` is missing", key.path()));
+            let error =
+                self.values.spot(key).error(MistakeKind::Missing, format!("`{}` is missing", key.path()));
             self.missing.push(error.expecting(key.expected()));
         }
         value
@@ -138,12 +139,12 @@ impl Binding for Read<'_> {
 
 /// Binding that writes fields as values.
 #[derive(Default)]
-pub struct Write(Vec<(&'static Key, Value)>);
+pub struct Write(Vec<(&'static Key, KeyValue)>);
 
 impl Binding for Write {
-    fn meet(&mut self, key: &'static Key, value: Option<Value>) -> Option<Value> {
+    fn meet(&mut self, key: &'static Key, value: Option<KeyValue>) -> Option<KeyValue> {
         // A choice implied by another key is not written: that key implies it again.
-        let is_said = !matches!((&value, key.kind), (Some(Value::Word(word)), kind) if !kind.admits(word));
+        let is_said = !matches!((&value, key.kind), (Some(KeyValue::Word(word)), kind) if !kind.admits(word));
         self.0.extend(value.filter(|_| is_said).map(|value| (key, value)));
         None
     }

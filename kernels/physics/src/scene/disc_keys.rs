@@ -1,9 +1,9 @@
 //! Keys of the initial discs.
 
-use super::key_set::Rivals;
-use super::keys::Bounds::{Finite, NonNegative, Positive, UpTo, Within};
+use super::key_set::ExclusiveKeys;
 use super::keys::Fallback::{Is, Otherwise, Required};
-use super::keys::Kind::{Choice, Number, Numbers, Pair, Pairs, Text, Whole};
+use super::keys::KeyValueKind::{Choice, Number, Numbers, Pair, Pairs, Text, Whole};
+use super::keys::NumberRange::{Finite, NonNegative, Positive, UpTo, Within};
 use super::keys::{Use, define_keys};
 use crate::words::{Words, define_words};
 
@@ -74,7 +74,7 @@ define_keys! {
         "Radius of the wall discs.";
     WALL_SPACING = "particles" "wall_spacing", Number(Positive), "length", Otherwise("3 `wall_radius`"), LINED,
         "Distance of the centres of neighbouring wall discs; rounded so that it divides the length.";
-    WALL_MOTION = "particles" "wall_motion", Choice(Motion::WORDS), "", Is("\"fixed\""), HOLDING,
+    WALL_MOTION = "particles" "wall_motion", Choice(WallMotionKind::WORDS), "", Is("\"fixed\""), HOLDING,
         "Motion of the wall discs, all together.";
     WALL_AMPLITUDE = "particles" "wall_amplitude", Pair(Finite), "length", Required, OSCILLATING,
         "Amplitude a of the walls' motion r(0) + a sin(2π f t).";
@@ -83,16 +83,16 @@ define_keys! {
 }
 
 /// Keys of discs that exclude each other.
-pub static DISC_RIVALS: &[Rivals] = &[
-    Rivals { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true },
-    Rivals { keys: &[&COUNT, &PACKING_FRACTION], used: PLACED, needed: true },
-    Rivals { keys: &[&COUNT, &PACKING_FRACTION], used: MESH, needed: true },
-    Rivals { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false },
+pub static DISC_RIVALS: &[ExclusiveKeys] = &[
+    ExclusiveKeys { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true },
+    ExclusiveKeys { keys: &[&COUNT, &PACKING_FRACTION], used: PLACED, needed: true },
+    ExclusiveKeys { keys: &[&COUNT, &PACKING_FRACTION], used: MESH, needed: true },
+    ExclusiveKeys { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false },
 ];
 
 define_words! {
     /// Motion of wall discs.
-    pub(super) enum Motion {
+    pub(super) enum WallMotionKind {
         /// At rest.
         Fixed = "fixed",
         /// Sinusoidal.

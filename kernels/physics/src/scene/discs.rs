@@ -2,7 +2,7 @@
 
 use super::binding::Binding;
 use super::disc_keys::*;
-use super::keys::{Key, Value};
+use super::keys::{Key, KeyValue};
 use super::start_file::StartFile;
 use crate::placement::Second;
 use crate::words::define_words;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 define_words! {
     /// Kind of the initial placement.
-    enum Origin {
+    enum PlacementKind {
         /// At random.
         Random = "random",
         /// Placed small and grown while they move.
@@ -31,7 +31,7 @@ define_words! {
 
 /// Initial discs.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Start {
+pub enum DiscStart {
     /// Read from an extended XYZ file.
     File(StartFile),
     /// Listed one by one.
@@ -43,28 +43,28 @@ pub enum Start {
         /// N π R² over the area of the box.
         packing_fraction: f64,
         /// Properties of the discs.
-        grains: Grains,
+        grains: GeneratedDiscs,
     },
     /// At random in the box, without overlap.
     Random {
         /// Number or packing fraction.
         amount: Amount,
         /// Properties of the discs.
-        grains: Grains,
+        grains: GeneratedDiscs,
     },
     /// At random in the box, but small, then grown while they move and collide.
     Compressed {
         /// Number or packing fraction.
         amount: Amount,
         /// Properties of the discs.
-        grains: Grains,
+        grains: GeneratedDiscs,
     },
     /// At random sites of a square mesh, at most one disc on each.
     Mesh {
         /// Number or packing fraction.
         amount: Amount,
         /// Properties of the discs.
-        grains: Grains,
+        grains: GeneratedDiscs,
         /// Smallest distance of neighbouring sites (length).
         spacing: f64,
     },
@@ -73,9 +73,9 @@ pub enum Start {
         /// Number, or packing fraction in the clear channel.
         amount: Amount,
         /// Properties of the discs.
-        grains: Grains,
+        grains: GeneratedDiscs,
         /// Wall discs.
-        lining: Lining,
+        lining: WallLining,
         /// Width between the surfaces of the wall discs (length).
         clear_width: f64,
     },
@@ -84,17 +84,17 @@ pub enum Start {
         /// Number, or packing fraction in the fill height.
         amount: Amount,
         /// Properties of the discs.
-        grains: Grains,
+        grains: GeneratedDiscs,
         /// The floor.
-        lining: Lining,
+        lining: WallLining,
         /// Height above the floor up to which discs are placed (length).
         fill_height: f64,
     },
 }
 
-impl Default for Start {
+impl Default for DiscStart {
     fn default() -> Self {
-        Start::Random { amount: Amount::default(), grains: Grains::default() }
+        DiscStart::Random { amount: Amount::default(), grains: GeneratedDiscs::default() }
     }
 }
 
@@ -115,7 +115,7 @@ impl Default for Amount {
 
 /// Properties of generated discs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Grains {
+pub struct GeneratedDiscs {
     /// Mean radius (length).
     pub radius: f64,
     /// Standard deviation of the Gaussian radii, relative to the mean.
@@ -149,7 +149,7 @@ impl Default for Speed {
 
 /// Row of wall discs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Lining {
+pub struct WallLining {
     /// Radius (length).
     pub radius: f64,
     /// Distance of neighbouring centres (length).
@@ -194,21 +194,26 @@ pub enum WallMotion {
 
 impl WallMotion {
     /// Binds its keys if the start may have walls.
-    pub fn bind(&mut self, binding: &mut dyn Binding, start: &Start) {
+    pub fn bind(&mut self, binding: &mut dyn Binding, start: &DiscStart) {
         if matches!(
             start,
-            Start::Random { .. } | Start::Compressed { .. } | Start::Mesh { .. } | Start::Hexagonal { .. }
+            DiscStart::Random { .. }
+                | DiscStart::Compressed { .. }
+                | DiscStart::Mesh { .. }
+                | DiscStart::Hexagonal { .. }
         ) {
             return;
         }
         let (mut motion, mut amplitude, mut frequency) = match *self {
-            WallMotion::Fixed => (Motion::Fixed, [0.0; 2], 0.0),
-            WallMotion::Oscillating { amplitude, frequency } => (Motion::Oscillating, amplitude, frequency),
+            WallMotion::Fixed => (WallMotionKind::Fixed, [0.0; 2], 0.0),
+            WallMotion::Oscillating { amplitude, frequency } => {
+                (WallMotionKind::Oscillating, amplitude, frequency)
+            }
         };
         binding.choice(&WALL_MOTION, &mut motion);
         *self = match motion {
-            Motion::Fixed => WallMotion::Fixed,
-            Motion::Oscillating => {
+            WallMotionKind::Fixed => WallMotion::Fixed,
+            WallMotionKind::Oscillating => {
                 binding.pair(&WALL_AMPLITUDE, &mut amplitude);
                 binding.number(&WALL_FREQUENCY, &mut frequency);
                 WallMotion::Oscillating { amplitude, frequency }
@@ -217,31 +222,31 @@ impl WallMotion {
     }
 }
 
-impl Start {
-    fn origin(&self) -> Origin {
+impl DiscStart {
+    fn origin(&self) -> PlacementKind {
         match self {
-            Start::Random { .. } => Origin::Random,
-            Start::Compressed { .. } => Origin::Compressed,
-            Start::Mesh { .. } => Origin::Mesh,
-            Start::Hexagonal { .. } => Origin::Hexagonal,
-            Start::Pipe { .. } => Origin::Pipe,
-            Start::Box { .. } => Origin::Box,
-            Start::List(_) => Origin::List,
-            Start::File(_) => Origin::File,
+            DiscStart::Random { .. } => PlacementKind::Random,
+            DiscStart::Compressed { .. } => PlacementKind::Compressed,
+            DiscStart::Mesh { .. } => PlacementKind::Mesh,
+            DiscStart::Hexagonal { .. } => PlacementKind::Hexagonal,
+            DiscStart::Pipe { .. } => PlacementKind::Pipe,
+            DiscStart::Box { .. } => PlacementKind::Box,
+            DiscStart::List(_) => PlacementKind::List,
+            DiscStart::File(_) => PlacementKind::File,
         }
     }
 
-    fn empty(origin: Origin) -> Start {
-        let (amount, grains, lining) = (Amount::default(), Grains::default(), Lining::default());
+    fn empty(origin: PlacementKind) -> DiscStart {
+        let (amount, grains, lining) = (Amount::default(), GeneratedDiscs::default(), WallLining::default());
         match origin {
-            Origin::Random => Start::Random { amount, grains },
-            Origin::Compressed => Start::Compressed { amount, grains },
-            Origin::Mesh => Start::Mesh { amount, grains, spacing: 0.0 },
-            Origin::Hexagonal => Start::Hexagonal { count: 0, packing_fraction: 0.0, grains },
-            Origin::Pipe => Start::Pipe { amount, grains, lining, clear_width: 0.0 },
-            Origin::Box => Start::Box { amount, grains, lining, fill_height: 0.0 },
-            Origin::List => Start::List(List::default()),
-            Origin::File => Start::File(StartFile::default()),
+            PlacementKind::Random => DiscStart::Random { amount, grains },
+            PlacementKind::Compressed => DiscStart::Compressed { amount, grains },
+            PlacementKind::Mesh => DiscStart::Mesh { amount, grains, spacing: 0.0 },
+            PlacementKind::Hexagonal => DiscStart::Hexagonal { count: 0, packing_fraction: 0.0, grains },
+            PlacementKind::Pipe => DiscStart::Pipe { amount, grains, lining, clear_width: 0.0 },
+            PlacementKind::Box => DiscStart::Box { amount, grains, lining, fill_height: 0.0 },
+            PlacementKind::List => DiscStart::List(List::default()),
+            PlacementKind::File => DiscStart::File(StartFile::default()),
         }
     }
 
@@ -250,36 +255,36 @@ impl Start {
         let mut origin = self.origin();
         binding.choice(&GENERATE, &mut origin);
         if origin != self.origin() {
-            *self = Start::empty(origin);
+            *self = DiscStart::empty(origin);
         }
         match self {
-            Start::File(file) => {
+            DiscStart::File(file) => {
                 let mut name = file.path().to_string_lossy().into_owned();
                 binding.word(&FILE, &mut name);
                 *file = StartFile::new(beside(binding.file(), &name), binding.shared_start());
             }
-            Start::List(list) => list.bind(binding),
-            Start::Hexagonal { count, packing_fraction, grains } => {
+            DiscStart::List(list) => list.bind(binding),
+            DiscStart::Hexagonal { count, packing_fraction, grains } => {
                 binding.count(&COUNT, count);
                 binding.number(&PACKING_FRACTION, packing_fraction);
                 grains.bind(binding, false);
             }
-            Start::Random { amount, grains } | Start::Compressed { amount, grains } => {
+            DiscStart::Random { amount, grains } | DiscStart::Compressed { amount, grains } => {
                 amount.bind(binding);
                 grains.bind(binding, true);
             }
-            Start::Mesh { amount, grains, spacing } => {
+            DiscStart::Mesh { amount, grains, spacing } => {
                 amount.bind(binding);
                 grains.bind(binding, false);
                 or_else(binding, &SPACING, spacing, 2.0 * grains.radius);
             }
-            Start::Pipe { amount, grains, lining, clear_width } => {
+            DiscStart::Pipe { amount, grains, lining, clear_width } => {
                 amount.bind(binding);
                 grains.bind(binding, true);
                 lining.bind(binding, grains.radius);
                 binding.number(&CLEAR_WIDTH, clear_width);
             }
-            Start::Box { amount, grains, lining, fill_height } => {
+            DiscStart::Box { amount, grains, lining, fill_height } => {
                 amount.bind(binding);
                 grains.bind(binding, true);
                 lining.bind(binding, grains.radius);
@@ -291,20 +296,20 @@ impl Start {
     /// Seed of its random numbers; none if the start is read or listed.
     pub fn seed(&self) -> Option<u64> {
         match self {
-            Start::File(_) | Start::List(_) => None,
-            Start::Hexagonal { grains, .. }
-            | Start::Random { grains, .. }
-            | Start::Compressed { grains, .. }
-            | Start::Mesh { grains, .. }
-            | Start::Pipe { grains, .. }
-            | Start::Box { grains, .. } => Some(grains.seed),
+            DiscStart::File(_) | DiscStart::List(_) => None,
+            DiscStart::Hexagonal { grains, .. }
+            | DiscStart::Random { grains, .. }
+            | DiscStart::Compressed { grains, .. }
+            | DiscStart::Mesh { grains, .. }
+            | DiscStart::Pipe { grains, .. }
+            | DiscStart::Box { grains, .. } => Some(grains.seed),
         }
     }
 
     /// Path of the start file, if there is one.
     pub fn file(&self) -> Option<&Path> {
         match self {
-            Start::File(file) => Some(file.path()),
+            DiscStart::File(file) => Some(file.path()),
             _ => None,
         }
     }
@@ -325,7 +330,7 @@ impl Amount {
     }
 }
 
-impl Grains {
+impl GeneratedDiscs {
     /// Standard deviation of each component of the velocity of a disc of a mass (length/time).
     pub fn deviation(&self, mass: f64) -> f64 {
         match self.speed {
@@ -359,14 +364,14 @@ impl Grains {
 
 /// Binds a number whose default depends on other values.
 fn or_else(binding: &mut dyn Binding, key: &'static Key, field: &mut f64, otherwise: f64) {
-    match binding.meet(key, Some(Value::Number(*field))) {
-        Some(Value::Number(value)) => *field = value,
+    match binding.meet(key, Some(KeyValue::Number(*field))) {
+        Some(KeyValue::Number(value)) => *field = value,
         _ if binding.reads() => *field = otherwise,
         _ => {}
     }
 }
 
-impl Lining {
+impl WallLining {
     fn bind(&mut self, binding: &mut dyn Binding, grain: f64) {
         or_else(binding, &WALL_RADIUS, &mut self.radius, 0.9 * grain);
         or_else(binding, &WALL_SPACING, &mut self.spacing, 3.0 * self.radius);

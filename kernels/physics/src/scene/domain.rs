@@ -3,12 +3,12 @@
 use super::SceneError;
 use super::binding::Binding;
 use super::disc_keys::SIDED;
-use super::keys::Bounds::{Finite, Positive};
 use super::keys::Fallback::{Is, Required};
-use super::keys::Kind::{Pair, Switches};
-use super::keys::{Use, Value, define_keys};
-use super::values::Values;
-use crate::input::Reason;
+use super::keys::KeyValueKind::{Pair, Switches};
+use super::keys::NumberRange::{Finite, Positive};
+use super::keys::{KeyValue, Use, define_keys};
+use super::values::SceneValues;
+use crate::input::MistakeKind;
 
 const ALWAYS: Use = None;
 
@@ -27,7 +27,7 @@ define_keys! {
 
 /// Planar box of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Domain {
+pub struct SceneDomain {
     /// Lower left corner (length).
     pub origin: [f64; 2],
     /// Sides (length); none if a hexagonal start sets them.
@@ -38,7 +38,7 @@ pub struct Domain {
     pub gravity: [f64; 2],
 }
 
-impl Domain {
+impl SceneDomain {
     /// Binds its keys.
     pub fn bind(&mut self, binding: &mut dyn Binding) {
         binding.pair(&ORIGIN, &mut self.origin);
@@ -55,13 +55,13 @@ impl Domain {
 }
 
 /// Checks that sides are periodic as a start requires.
-pub(super) fn periodic_as(values: &Values, needed: [bool; 2], why: &str) -> Option<SceneError> {
-    let Some(Value::Switches(periodic)) = values.value(&PERIODIC) else { return None };
+pub(super) fn periodic_as(values: &SceneValues, needed: [bool; 2], why: &str) -> Option<SceneError> {
+    let Some(KeyValue::Switches(periodic)) = values.value(&PERIODIC) else { return None };
     (periodic != needed).then(|| {
-        let found = Value::Switches(periodic).to_toml();
+        let found = KeyValue::Switches(periodic).to_toml();
         values
             .spot(&PERIODIC)
-            .error(Reason::Contradiction, format!("`domain.periodic` is {found}, but {why}"))
-            .expecting(format!("periodic = {}", Value::Switches(needed).to_toml()))
+            .error(MistakeKind::Contradiction, format!("`domain.periodic` is {found}, but {why}"))
+            .expecting(format!("periodic = {}", KeyValue::Switches(needed).to_toml()))
     })
 }

@@ -3,7 +3,7 @@
 use super::general::{FORMAT, FORMAT_VERSION};
 use super::values::Vocabulary;
 use super::{SceneError, SceneErrors};
-use crate::input::{InputText, Reason};
+use crate::input::{InputText, MistakeKind};
 use toml::de::{DeTable, DeValue};
 
 /// Rejects a scene of format 1.
@@ -23,7 +23,7 @@ pub(super) fn refuse(
     let (line, names) = (text.spot(format.span().start), methods.iter().map(|method| method.keys.method));
     let names: Vec<String> = names.map(|name| format!("kind = \"{name}\"")).collect();
     let mut errors: Vec<SceneError> = vec![
-        line.error(Reason::Format, "this program reads format 2; the file is of format 1")
+        line.error(MistakeKind::Format, "this program reads format 2; the file is of format 1")
             .expecting(format!("format = {}", FORMAT_VERSION))
             .advising(format!("in [method], name the method: {}", names.join(" or "))),
     ];
@@ -33,7 +33,7 @@ pub(super) fn refuse(
         let Some((key, value)) = section.and_then(|section| section.get_key_value(name)) else { continue };
         let word = value.get_ref().as_str().map(|word| format!(" = \"{}\"", crate::quoted::quoted(word)));
         let message = format!("`{}{}` is of format 1", renamed.old, word.unwrap_or_default());
-        errors.push(text.spot(key.span().start).error(Reason::Format, message).expecting(renamed.new));
+        errors.push(text.spot(key.span().start).error(MistakeKind::Format, message).expecting(renamed.new));
     }
     SceneErrors::none_of(errors)
 }

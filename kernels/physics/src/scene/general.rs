@@ -2,14 +2,14 @@
 
 use super::SceneError;
 use super::binding::Binding;
-use super::key_set::Rivals;
-use super::keys::Bounds::{NonNegative, Positive};
+use super::key_set::ExclusiveKeys;
 use super::keys::Fallback::{Is, Otherwise, Required};
-use super::keys::Kind::{self, Number, OneOf, Switch, Text, Whole};
+use super::keys::KeyValueKind::{self, Number, OneOf, Switch, Text, Whole};
+use super::keys::NumberRange::{NonNegative, Positive};
 use super::keys::{Key, Use, define_keys};
-use super::target::Target;
-use super::values::Values;
-use crate::input::Reason;
+use super::target::MeanTarget;
+use super::values::SceneValues;
+use crate::input::MistakeKind;
 use crate::io::FORMATS;
 use crate::io::output_format::OutputFormat;
 use crate::number::significant;
@@ -51,7 +51,7 @@ define_keys! {
 define_keys! {
     /// End of a run at a target error of a mean.
     pub static TARGETED;
-    TARGET = "run" "until", Kind::Target, "", Otherwise("no target"), ALWAYS,
+    TARGET = "run" "until", KeyValueKind::Target, "", Otherwise("no target"), ALWAYS,
         "Ends the run once the mean of a quantity reaches a target error: the half-width of its 95 % confidence interval, in percent of the mean or in its unit. `steps` or `time` is the latest end; a run that reaches it first fails.";
 }
 
@@ -72,7 +72,7 @@ pub static OUTPUT: &[&Key] = &KEYS_OF_FORMATS.each_ref();
 define_keys! {
     /// Averages of the structure during a run, for scenes with a box.
     pub(crate) static SUMMED;
-    STRUCTURE = "output" "structure", Kind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
+    STRUCTURE = "output" "structure", KeyValueKind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
         "Structure functions averaged over the second half of the run, each in a file of its own with its error. Samples are snapshots; for msd and vacf they are rows of thermo.csv.";
     STRUCTURE_SHARE = "output" "structure_share", Number(Positive), "", Otherwise("0.05"), ALWAYS,
         "Largest fraction of a run's work for structure functions, by a count of operations. Where samples cost more, only every second, third, … row or snapshot is one. 1000 for all of them.";
@@ -86,15 +86,16 @@ define_keys! {
 }
 
 /// Duration keys of a run with time steps: a number of steps or a time.
-pub static DURATION: &[Rivals] = &[Rivals { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true }];
+pub static DURATION: &[ExclusiveKeys] =
+    &[ExclusiveKeys { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true }];
 
 /// Duration of a run and intervals of its output (steps; 0 is never).
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Run {
+pub struct RunKeys {
     /// Number of steps.
     pub steps: u64,
     /// Target error of a mean that ends the run early.
-    pub target: Option<Target>,
+    pub target: Option<MeanTarget>,
     /// Steps between rows of observables.
     pub(crate) thermo_every: u64,
     /// Steps between snapshots.
@@ -103,7 +104,7 @@ pub struct Run {
     pub(crate) checkpoint_every: Option<u64>,
 }
 
-impl Run {
+impl RunKeys {
     /// Binds its keys; a time is rounded to a whole number of steps of `dt` (time).
     pub fn bind(&mut self, binding: &mut dyn Binding, dt: f64) {
         let mut time = None;
@@ -120,11 +121,11 @@ impl Run {
 }
 
 /// Checks that a duration has at most the largest number of steps.
-pub fn too_many_steps(values: &Values) -> Vec<SceneError> {
+pub fn too_many_steps(values: &SceneValues) -> Vec<SceneError> {
     let given = values.given(&TIME).and_then(|_| Some((values.number(&TIME)?, values.number(&DT)?)));
     let Some((time, dt)) = given.filter(|(time, dt)| time / dt > MOST_STEPS as f64) else { return vec![] };
     let message = format!("`run.time` = {time} takes {} steps of dt = {dt}", significant(time / dt, 4));
-    let error = values.spot(&TIME).error(Reason::Range, message);
+    let error = values.spot(&TIME).error(MistakeKind::Range, message);
     vec![error.expecting(format!("at most {} steps", significant(MOST_STEPS as f64, 1)))]
 }
 

@@ -17,7 +17,7 @@ pub const SECTIONS: [(&str, &str); 9] = [
 
 /// Keys that exclude each other: at most one may be given.
 #[derive(Debug)]
-pub struct Rivals {
+pub struct ExclusiveKeys {
     /// Exclusive keys.
     pub keys: &'static [&'static Key],
     /// Condition under which they exclude each other.
@@ -34,7 +34,7 @@ pub struct KeySet {
     /// Groups of keys; within a section they are written in this order.
     pub groups: &'static [&'static [&'static Key]],
     /// Keys that exclude each other.
-    pub rivals: &'static [&'static [Rivals]],
+    pub rivals: &'static [&'static [ExclusiveKeys]],
     /// Keys that the method lacks though a user may expect them, as `section.key`, each with advice.
     pub advice: &'static [(&'static str, &'static str)],
 }

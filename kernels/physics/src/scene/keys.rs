@@ -1,7 +1,7 @@
 //! Keys of scenes: name, type, range, unit, default and documentation.
 
-use super::target::{Target, Width};
-use crate::input::{Mistakes, Reason};
+use super::target::{MeanTarget, Width};
+use crate::input::{MistakeKind, MistakeList};
 use crate::quoted::quoted;
 use crate::words::nearest;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use toml::de::{DeInteger, DeValue};
 
 /// Value of a key, read and in range.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub enum KeyValue {
     /// A number.
     Number(f64),
     /// A whole number.
@@ -30,39 +30,39 @@ pub enum Value {
     /// List of rows of numbers.
     Rows(Vec<Vec<f64>>),
     /// Target error of a mean.
-    Target(Target),
+    Target(MeanTarget),
     /// Some of the words to choose from.
     Words(Vec<String>),
 }
 
-impl Value {
+impl KeyValue {
     /// Text in TOML; numbers have the shortest form that reads back to the same bits.
     pub fn to_toml(&self) -> String {
         let list = |items: Vec<String>| format!("[{}]", items.join(", "));
         let pair = |pair: &[f64; 2]| format!("[{:?}, {:?}]", pair[0], pair[1]);
         match self {
-            Value::Number(value) => format!("{value:?}"),
-            Value::Whole(value) => value.to_string(),
-            Value::Switch(value) => value.to_string(),
-            Value::Word(word) => toml::Value::String(word.clone()).to_string(),
-            Value::Pair(value) => pair(value),
-            Value::Target(target) => target.to_toml(),
-            Value::Words(words) => {
+            KeyValue::Number(value) => format!("{value:?}"),
+            KeyValue::Whole(value) => value.to_string(),
+            KeyValue::Switch(value) => value.to_string(),
+            KeyValue::Word(word) => toml::Value::String(word.clone()).to_string(),
+            KeyValue::Pair(value) => pair(value),
+            KeyValue::Target(target) => target.to_toml(),
+            KeyValue::Words(words) => {
                 list(words.iter().map(|word| toml::Value::String(word.clone()).to_string()).collect())
             }
-            Value::Switches([x, y]) => format!("[{x}, {y}]"),
-            Value::Pairs(values) => list(values.iter().map(pair).collect()),
-            Value::Rows(rows) => list(
+            KeyValue::Switches([x, y]) => format!("[{x}, {y}]"),
+            KeyValue::Pairs(values) => list(values.iter().map(pair).collect()),
+            KeyValue::Rows(rows) => list(
                 rows.iter().map(|row| list(row.iter().map(|value| format!("{value:?}")).collect())).collect(),
             ),
-            Value::Numbers(values) => list(values.iter().map(|value| format!("{value:?}")).collect()),
+            KeyValue::Numbers(values) => list(values.iter().map(|value| format!("{value:?}")).collect()),
         }
     }
 }
 
 /// Range of a number; every number must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bounds {
+pub enum NumberRange {
     /// Any finite number.
     Finite,
     /// Above zero.
@@ -77,37 +77,37 @@ pub enum Bounds {
     AtMost(f64),
 }
 
-impl Bounds {
+impl NumberRange {
     /// True if a number is in the range.
     pub(crate) fn admit(self, value: f64) -> bool {
         value.is_finite()
             && match self {
-                Bounds::Finite => true,
-                Bounds::Positive => value > 0.0,
-                Bounds::NonNegative => value >= 0.0,
-                Bounds::Within(bound) => 0.0 < value && value < bound,
-                Bounds::UpTo(bound) => (0.0..bound).contains(&value),
-                Bounds::AtMost(bound) => 0.0 < value && value <= bound,
+                NumberRange::Finite => true,
+                NumberRange::Positive => value > 0.0,
+                NumberRange::NonNegative => value >= 0.0,
+                NumberRange::Within(bound) => 0.0 < value && value < bound,
+                NumberRange::UpTo(bound) => (0.0..bound).contains(&value),
+                NumberRange::AtMost(bound) => 0.0 < value && value <= bound,
             }
     }
 
     fn words(self) -> String {
         match self {
-            Bounds::Finite => "finite".to_owned(),
-            Bounds::Positive => "above 0".to_owned(),
-            Bounds::NonNegative => "0 or more".to_owned(),
-            Bounds::Within(bound) => format!("above 0 and below {bound}"),
-            Bounds::UpTo(bound) => format!("0 or more and below {bound}"),
-            Bounds::AtMost(bound) => format!("above 0 and at most {bound}"),
+            NumberRange::Finite => "finite".to_owned(),
+            NumberRange::Positive => "above 0".to_owned(),
+            NumberRange::NonNegative => "0 or more".to_owned(),
+            NumberRange::Within(bound) => format!("above 0 and below {bound}"),
+            NumberRange::UpTo(bound) => format!("0 or more and below {bound}"),
+            NumberRange::AtMost(bound) => format!("above 0 and at most {bound}"),
         }
     }
 }
 
 /// Type of a key's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum KeyValueKind {
     /// A number.
-    Number(Bounds),
+    Number(NumberRange),
     /// A whole number of at least the first and at most the second bound.
     Whole(u64, u64),
     /// One of some whole numbers.
@@ -119,13 +119,13 @@ pub enum Kind {
     /// Text that is not empty, of one line.
     Text,
     /// `[x, y]`, both in the range.
-    Pair(Bounds),
+    Pair(NumberRange),
     /// `[x, y]`, each `true` or `false`.
     Switches,
     /// `[[x, y], …]`.
     Pairs,
     /// `[a, b, …]`, all in the range.
-    Numbers(Bounds),
+    Numbers(NumberRange),
     /// `[[a, b, …], …]`, each row with this number of finite numbers.
     Rows(usize),
     /// `{ quantity = "…", error = "…%" }`, or a number as the error.
@@ -135,22 +135,22 @@ pub enum Kind {
 }
 
 /// Reason why a value cannot be read, with its location in the text.
-pub(super) struct Fault {
+pub(super) struct ValueFault {
     pub(super) span: Range<usize>,
-    pub(super) reason: Reason,
+    pub(super) reason: MistakeKind,
     pub(super) found: String,
     pub(super) nearest: Option<&'static str>,
 }
 
-impl Fault {
-    fn new(value: &Spanned<DeValue<'_>>, reason: Reason, found: impl Into<String>) -> Self {
-        Fault { span: value.span(), reason, found: found.into(), nearest: None }
+impl ValueFault {
+    fn new(value: &Spanned<DeValue<'_>>, reason: MistakeKind, found: impl Into<String>) -> Self {
+        ValueFault { span: value.span(), reason, found: found.into(), nearest: None }
     }
 }
 
-type Read<T> = Result<T, Vec<Fault>>;
+type FaultsOr<T> = Result<T, Vec<ValueFault>>;
 
-impl Kind {
+impl KeyValueKind {
     /// Description of the values of this type.
     pub fn words(self) -> String {
         let joined = |words: Vec<String>| match words.split_last() {
@@ -159,54 +159,58 @@ impl Kind {
             None => String::new(),
         };
         match self {
-            Kind::Number(bounds) => format!("a number, {}", bounds.words()),
-            Kind::Whole(least, u64::MAX) => format!("a whole number, {least} or more"),
-            Kind::Whole(least, most) => format!("a whole number, {least} to {most}"),
-            Kind::OneOf(values) => joined(values.iter().map(ToString::to_string).collect()),
-            Kind::Switch => "true or false".to_owned(),
-            Kind::Choice(words) => joined(words.iter().map(|word| format!("\"{word}\"")).collect()),
-            Kind::Text => "text in quotes, one line".to_owned(),
-            Kind::Pair(bounds) => format!("[x, y], two numbers, {}", bounds.words()),
-            Kind::Target => {
+            KeyValueKind::Number(bounds) => format!("a number, {}", bounds.words()),
+            KeyValueKind::Whole(least, u64::MAX) => format!("a whole number, {least} or more"),
+            KeyValueKind::Whole(least, most) => format!("a whole number, {least} to {most}"),
+            KeyValueKind::OneOf(values) => joined(values.iter().map(ToString::to_string).collect()),
+            KeyValueKind::Switch => "true or false".to_owned(),
+            KeyValueKind::Choice(words) => joined(words.iter().map(|word| format!("\"{word}\"")).collect()),
+            KeyValueKind::Text => "text in quotes, one line".to_owned(),
+            KeyValueKind::Pair(bounds) => format!("[x, y], two numbers, {}", bounds.words()),
+            KeyValueKind::Target => {
                 "{ quantity = \"NAME\", error = \"0.1%\" }, or an error above 0 in its unit".to_owned()
             }
-            Kind::Switches => "[x, y], each true or false".to_owned(),
-            Kind::Words(words) => {
+            KeyValueKind::Switches => "[x, y], each true or false".to_owned(),
+            KeyValueKind::Words(words) => {
                 format!("a list of {}", joined(words.iter().map(|word| format!("\"{word}\"")).collect()))
             }
-            Kind::Pairs => "[[x, y], …], finite numbers".to_owned(),
-            Kind::Rows(numbers) => format!("[[…], …], each of {numbers} finite numbers"),
-            Kind::Numbers(bounds) => format!("[a, b, …], numbers, {}", bounds.words()),
+            KeyValueKind::Pairs => "[[x, y], …], finite numbers".to_owned(),
+            KeyValueKind::Rows(numbers) => format!("[[…], …], each of {numbers} finite numbers"),
+            KeyValueKind::Numbers(bounds) => format!("[a, b, …], numbers, {}", bounds.words()),
         }
     }
 
     /// True if a word is admitted. Types other than a choice of words admit any.
     pub(super) fn admits(self, word: &str) -> bool {
         match self {
-            Kind::Choice(words) => words.iter().any(|choice| is_choice(choice, word)),
+            KeyValueKind::Choice(words) => words.iter().any(|choice| is_choice(choice, word)),
             _ => true,
         }
     }
 
     /// Reads a value and returns all its faults.
-    pub(super) fn read(self, value: &Spanned<DeValue<'_>>) -> Read<Value> {
+    pub(super) fn read(self, value: &Spanned<DeValue<'_>>) -> FaultsOr<KeyValue> {
         Ok(match self {
-            Kind::Number(bounds) => Value::Number(number(value, bounds)?),
-            Kind::Whole(least, most) => Value::Whole(whole(value, |count| (least..=most).contains(&count))?),
-            Kind::OneOf(values) => Value::Whole(whole(value, |count| values.contains(&count))?),
-            Kind::Switch => Value::Switch(switch(value)?),
-            Kind::Choice(words) => Value::Word(choice(value, words)?),
-            Kind::Text => Value::Word(text(value)?),
-            Kind::Pair(bounds) => Value::Pair(pair(value, |item| number(item, bounds))?),
-            Kind::Target => Value::Target(target(value)?),
-            Kind::Words(words) => Value::Words(list(value, |item| choice(item, words))?),
-            Kind::Switches => Value::Switches(pair(value, switch)?),
-            Kind::Pairs => Value::Pairs(list(value, |item| pair(item, |item| number(item, Bounds::Finite)))?),
-            Kind::Rows(numbers) => Value::Rows(list(value, |row| {
-                let row_of = list(row, |item| number(item, Bounds::Finite))?;
+            KeyValueKind::Number(bounds) => KeyValue::Number(number(value, bounds)?),
+            KeyValueKind::Whole(least, most) => {
+                KeyValue::Whole(whole(value, |count| (least..=most).contains(&count))?)
+            }
+            KeyValueKind::OneOf(values) => KeyValue::Whole(whole(value, |count| values.contains(&count))?),
+            KeyValueKind::Switch => KeyValue::Switch(switch(value)?),
+            KeyValueKind::Choice(words) => KeyValue::Word(choice(value, words)?),
+            KeyValueKind::Text => KeyValue::Word(text(value)?),
+            KeyValueKind::Pair(bounds) => KeyValue::Pair(pair(value, |item| number(item, bounds))?),
+            KeyValueKind::Target => KeyValue::Target(target(value)?),
+            KeyValueKind::Words(words) => KeyValue::Words(list(value, |item| choice(item, words))?),
+            KeyValueKind::Switches => KeyValue::Switches(pair(value, switch)?),
+            KeyValueKind::Pairs => {
+                KeyValue::Pairs(list(value, |item| pair(item, |item| number(item, NumberRange::Finite)))?)
+            }
+            KeyValueKind::Rows(numbers) => KeyValue::Rows(list(value, |row| {
+                let row_of = list(row, |item| number(item, NumberRange::Finite))?;
                 if row_of.len() == numbers { Ok(row_of) } else { wrong_type(row) }
             })?),
-            Kind::Numbers(bounds) => Value::Numbers(list(value, |item| number(item, bounds))?),
+            KeyValueKind::Numbers(bounds) => KeyValue::Numbers(list(value, |item| number(item, bounds))?),
         })
     }
 }
@@ -228,12 +232,12 @@ fn found(value: &DeValue<'_>) -> String {
     }
 }
 
-fn wrong_type<T>(value: &Spanned<DeValue<'_>>) -> Read<T> {
-    Err(vec![Fault::new(value, Reason::Type, found(value.get_ref()))])
+fn wrong_type<T>(value: &Spanned<DeValue<'_>>) -> FaultsOr<T> {
+    Err(vec![ValueFault::new(value, MistakeKind::Type, found(value.get_ref()))])
 }
 
-fn out_of_range<T>(value: &Spanned<DeValue<'_>>) -> Read<T> {
-    Err(vec![Fault::new(value, Reason::Range, found(value.get_ref()))])
+fn out_of_range<T>(value: &Spanned<DeValue<'_>>) -> FaultsOr<T> {
+    Err(vec![ValueFault::new(value, MistakeKind::Range, found(value.get_ref()))])
 }
 
 fn magnitude(integer: &DeInteger<'_>) -> Option<f64> {
@@ -243,7 +247,7 @@ fn magnitude(integer: &DeInteger<'_>) -> Option<f64> {
     }
 }
 
-fn number(value: &Spanned<DeValue<'_>>, bounds: Bounds) -> Read<f64> {
+fn number(value: &Spanned<DeValue<'_>>, bounds: NumberRange) -> FaultsOr<f64> {
     let number = match value.get_ref() {
         DeValue::Integer(integer) => magnitude(integer),
         DeValue::Float(float) => float.as_str().parse().ok(),
@@ -256,7 +260,7 @@ fn number(value: &Spanned<DeValue<'_>>, bounds: Bounds) -> Read<f64> {
     }
 }
 
-fn whole(value: &Spanned<DeValue<'_>>, admit: impl Fn(u64) -> bool) -> Read<u64> {
+fn whole(value: &Spanned<DeValue<'_>>, admit: impl Fn(u64) -> bool) -> FaultsOr<u64> {
     let whole = match value.get_ref() {
         DeValue::Integer(integer) => {
             let digits = integer.as_str().trim_start_matches('+');
@@ -277,14 +281,14 @@ fn whole(value: &Spanned<DeValue<'_>>, admit: impl Fn(u64) -> bool) -> Read<u64>
     }
 }
 
-fn switch(value: &Spanned<DeValue<'_>>) -> Read<bool> {
+fn switch(value: &Spanned<DeValue<'_>>) -> FaultsOr<bool> {
     value.get_ref().as_bool().map_or_else(|| wrong_type(value), Ok)
 }
 
 /// Longest text that is a value (bytes): longer than any path.
 const LONGEST_TEXT: usize = 4096;
 
-fn text(value: &Spanned<DeValue<'_>>) -> Read<String> {
+fn text(value: &Spanned<DeValue<'_>>) -> FaultsOr<String> {
     match value.get_ref().as_str() {
         Some(text) if text.trim().is_empty() || text.chars().any(char::is_control) => out_of_range(value),
         Some(text) if text.len() > LONGEST_TEXT => out_of_range(value),
@@ -303,16 +307,19 @@ fn is_choice(word: &str, text: &str) -> bool {
     }
 }
 
-fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> Read<String> {
+fn choice(value: &Spanned<DeValue<'_>>, words: &'static [&'static str]) -> FaultsOr<String> {
     let Some(text) = value.get_ref().as_str() else { return wrong_type(value) };
     if words.iter().any(|choice| is_choice(choice, text)) {
         return Ok(text.to_owned());
     }
     let nearest = nearest(text, words.iter().copied());
-    Err(vec![Fault { nearest, ..Fault::new(value, Reason::Type, found(value.get_ref())) }])
+    Err(vec![ValueFault { nearest, ..ValueFault::new(value, MistakeKind::Type, found(value.get_ref())) }])
 }
 
-fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<Vec<T>> {
+fn list<T>(
+    value: &Spanned<DeValue<'_>>,
+    item: impl Fn(&Spanned<DeValue<'_>>) -> FaultsOr<T>,
+) -> FaultsOr<Vec<T>> {
     let Some(items) = value.get_ref().as_array() else { return wrong_type(value) };
     let (mut good, mut faults) = (Vec::new(), Vec::new());
     for (number, value) in items.iter().enumerate() {
@@ -321,32 +328,35 @@ fn list<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) ->
             Err(more) => faults.extend(more),
         }
         let rest = items.len() - number - 1;
-        if faults.len() >= Mistakes::NAMED / 2 && rest > 0 {
+        if faults.len() >= MistakeList::NAMED / 2 && rest > 0 {
             let found = format!("wrong in too many items; the {rest} items after this one are not checked");
-            faults.push(Fault::new(value, Reason::Type, found));
+            faults.push(ValueFault::new(value, MistakeKind::Type, found));
             break;
         }
     }
     if faults.is_empty() { Ok(good) } else { Err(faults) }
 }
 
-fn pair<T>(value: &Spanned<DeValue<'_>>, item: impl Fn(&Spanned<DeValue<'_>>) -> Read<T>) -> Read<[T; 2]> {
+fn pair<T>(
+    value: &Spanned<DeValue<'_>>,
+    item: impl Fn(&Spanned<DeValue<'_>>) -> FaultsOr<T>,
+) -> FaultsOr<[T; 2]> {
     let items = list(value, item)?;
     items.try_into().or_else(|_| wrong_type(value))
 }
 
-fn target(value: &Spanned<DeValue<'_>>) -> Read<Target> {
+fn target(value: &Spanned<DeValue<'_>>) -> FaultsOr<MeanTarget> {
     let Some(table) = value.get_ref().as_table() else { return wrong_type(value) };
     let (Some(quantity), Some(error), 2) = (table.get("quantity"), table.get("error"), table.len()) else {
         let names = "a table whose keys are not just `quantity` and `error`";
-        return Err(vec![Fault::new(value, Reason::Type, names)]);
+        return Err(vec![ValueFault::new(value, MistakeKind::Type, names)]);
     };
     let width = match error.get_ref() {
         DeValue::String(text) => Width::parse(text),
-        _ => Some(Width::Absolute(number(error, Bounds::Positive)?)),
+        _ => Some(Width::Absolute(number(error, NumberRange::Positive)?)),
     };
     match width {
-        Some(error) => Ok(Target { quantity: text(quantity)?, error }),
+        Some(error) => Ok(MeanTarget { quantity: text(quantity)?, error }),
         None => out_of_range(error),
     }
 }
@@ -373,7 +383,7 @@ pub struct Key {
     /// Name within the section.
     pub name: &'static str,
     /// Type of the value.
-    pub kind: Kind,
+    pub kind: KeyValueKind,
     /// Unit; empty for pure numbers and words.
     pub unit: &'static str,
     /// Default.

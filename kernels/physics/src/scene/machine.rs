@@ -3,7 +3,7 @@
 use super::binding::Binding;
 use super::keys::Fallback::Is;
 use super::keys::Key;
-use super::keys::Kind::Choice;
+use super::keys::KeyValueKind::Choice;
 use super::keys::define_keys;
 use crate::words::{Words, define_words};
 use stripmine_kernels::{Execution, InstructionSet};

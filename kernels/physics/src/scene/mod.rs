@@ -23,8 +23,10 @@ mod unknown;
 mod values;
 mod warning;
 
-pub use crate::input::{InputError as SceneError, InputErrors as SceneErrors, Place, Reason, Spot};
-pub use binding::{Binding, Read, Write};
+pub use crate::input::{
+    InputError as SceneError, InputErrors as SceneErrors, MistakeKind, Spot, TextLocation,
+};
+pub use binding::{Binding, ReadBinding, Write};
 pub(crate) use disc_keys::{
     CLEAR_WIDTH, FILE, FILL_HEIGHT, GENERATE, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SPEED,
     WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS, WALL_SPACING,
@@ -32,17 +34,17 @@ pub(crate) use disc_keys::{
 pub use disc_keys::{
     COUNT, DISC_RIVALS, DISCS, PACKING_FRACTION, POSITIONS, SEED, SPACING, TEMPERATURE, VELOCITIES,
 };
-pub use discs::{Amount, Grains, Lining, List, Speed, Start, WallMotion};
-pub use domain::{Domain, GRAVITY, PLANAR_DOMAIN, SIDES};
+pub use discs::{Amount, DiscStart, GeneratedDiscs, List, Speed, WallLining, WallMotion};
+pub use domain::{GRAVITY, PLANAR_DOMAIN, SIDES, SceneDomain};
 pub(crate) use domain::{ORIGIN, PERIODIC};
 pub use general::{
-    DT, DURATION, HEADING, METHOD, OUTPUT, Output, Run, STEP, STEPPED_RUN, STEPS, TARGETED, THERMO_EVERY,
+    DT, DURATION, HEADING, METHOD, OUTPUT, Output, RunKeys, STEP, STEPPED_RUN, STEPS, TARGETED, THERMO_EVERY,
     TIME, UNITS, bind_heading, too_many_steps,
 };
 pub(crate) use general::{STRUCTURE, SUMMED, TARGET};
-pub use key_set::{KeySet, Rivals, SECTIONS};
+pub use key_set::{ExclusiveKeys, KeySet, SECTIONS};
 pub(crate) use keys::Use;
-pub use keys::{Bounds, Fallback, Key, Kind, Value};
+pub use keys::{Fallback, Key, KeyValue, KeyValueKind, NumberRange};
 pub(crate) use machine::{
     ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, bind_arithmetic, bind_execution, bind_instructions,
     execution_name,
@@ -51,8 +53,8 @@ pub use machine::{PRECISION, Precision};
 pub use overrides::Overrides;
 pub use rules::disagreements;
 pub use start_file::StartFile;
-pub use target::{Target, Width};
-pub use values::{Preset, Renamed, Values, Vocabulary};
+pub use target::{MeanTarget, Width};
+pub use values::{Preset, RenamedKey, SceneValues, Vocabulary};
 pub use warning::Warning;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Overrides of a scene's values, key by key.
 
-use super::keys::{Key, Value};
+use super::keys::{Key, KeyValue};
 use crate::words::Words;
 use serde::{Serialize, Serializer};
 use toml::Spanned;
@@ -21,7 +21,7 @@ use toml::de::DeValue;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Overrides(Vec<(&'static Key, Value)>);
+pub struct Overrides(Vec<(&'static Key, KeyValue)>);
 
 impl Overrides {
     /// Creates an empty list of overrides.
@@ -31,7 +31,7 @@ impl Overrides {
 
     /// Adds an override; the last one for a key applies.
     #[must_use]
-    pub fn set(mut self, key: &'static Key, value: impl Into<Value>) -> Overrides {
+    pub fn set(mut self, key: &'static Key, value: impl Into<KeyValue>) -> Overrides {
         self.0.push((key, value.into()));
         self
     }
@@ -49,7 +49,7 @@ impl Overrides {
     }
 
     /// Keys and values, in the order in which they were added.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static Key, &Value)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&'static Key, &KeyValue)> {
         self.0.iter().map(|(key, value)| (*key, value))
     }
 
@@ -60,10 +60,10 @@ impl Overrides {
 }
 
 /// Value as a user types it: whole numbers without a point, words without quotes where possible.
-pub(super) fn typed(value: &Value) -> String {
+pub(super) fn typed(value: &KeyValue) -> String {
     let toml = value.to_toml();
     match value {
-        Value::Word(word) if as_typed(word.trim()).get_ref().as_str() == Some(word) => word.clone(),
+        KeyValue::Word(word) if as_typed(word.trim()).get_ref().as_str() == Some(word) => word.clone(),
         _ => toml.strip_suffix(".0").unwrap_or(&toml).to_owned(),
     }
 }
@@ -73,8 +73,8 @@ pub(super) fn as_typed(text: &str) -> Spanned<DeValue<'_>> {
     Spanned::new(0..0, DeValue::parse(text).map_or(DeValue::String(text.into()), Spanned::into_inner))
 }
 
-impl FromIterator<(&'static Key, Value)> for Overrides {
-    fn from_iter<I: IntoIterator<Item = (&'static Key, Value)>>(overrides: I) -> Overrides {
+impl FromIterator<(&'static Key, KeyValue)> for Overrides {
+    fn from_iter<I: IntoIterator<Item = (&'static Key, KeyValue)>>(overrides: I) -> Overrides {
         Overrides(overrides.into_iter().collect())
     }
 }
@@ -88,9 +88,9 @@ impl Serialize for Overrides {
 macro_rules! values_from {
     ($($ty:ty => $variant:ident,)*) => {
         $(
-            impl From<$ty> for Value {
-                fn from(value: $ty) -> Value {
-                    Value::$variant(value)
+            impl From<$ty> for KeyValue {
+                fn from(value: $ty) -> KeyValue {
+                    KeyValue::$variant(value)
                 }
             }
         )*
@@ -105,20 +105,20 @@ values_from! {
     Vec<[f64; 2]> => Pairs,
 }
 
-impl From<usize> for Value {
-    fn from(count: usize) -> Value {
-        Value::Whole(count as u64)
+impl From<usize> for KeyValue {
+    fn from(count: usize) -> KeyValue {
+        KeyValue::Whole(count as u64)
     }
 }
 
-impl From<&str> for Value {
-    fn from(word: &str) -> Value {
-        Value::Word(word.to_owned())
+impl From<&str> for KeyValue {
+    fn from(word: &str) -> KeyValue {
+        KeyValue::Word(word.to_owned())
     }
 }
 
-impl<W: Words> From<W> for Value {
-    fn from(word: W) -> Value {
+impl<W: Words> From<W> for KeyValue {
+    fn from(word: W) -> KeyValue {
         word.word().into()
     }
 }
@@ -127,7 +127,7 @@ impl<W: Words> From<W> for Value {
 mod tests {
     use super::*;
     use crate::method::{METHODS, vocabularies};
-    use crate::scene::{DT, FILE, PRECISION, Precision, VELOCITIES, Values};
+    use crate::scene::{DT, FILE, PRECISION, Precision, SceneValues, VELOCITIES};
 
     /// Overrides given as values and as texts read back exactly.
     #[test]
@@ -139,10 +139,10 @@ mod tests {
                 .set(&DT, dt)
                 .set(&VELOCITIES, velocities.clone())
                 .set(&PRECISION, Precision::Mixed);
-            let typed = Values::load("two-discs", &[], &known).unwrap().with(&overrides).unwrap();
-            for values in [typed, Values::load("two-discs", &overrides.texts(), &known).unwrap()] {
-                assert_eq!(values.given(&DT), Some(&Value::Number(dt)));
-                assert_eq!(values.given(&VELOCITIES), Some(&Value::Pairs(velocities.clone())));
+            let typed = SceneValues::load("two-discs", &[], &known).unwrap().with(&overrides).unwrap();
+            for values in [typed, SceneValues::load("two-discs", &overrides.texts(), &known).unwrap()] {
+                assert_eq!(values.given(&DT), Some(&KeyValue::Number(dt)));
+                assert_eq!(values.given(&VELOCITIES), Some(&KeyValue::Pairs(velocities.clone())));
                 assert_eq!(values.choice(&PRECISION).as_deref(), Some("mixed"));
             }
         }

@@ -2,16 +2,16 @@
 
 use super::general::METHOD;
 use super::overrides::Overrides;
-use super::values::{Preset, Values, Vocabulary};
+use super::values::{Preset, SceneValues, Vocabulary};
 use super::{SceneErrors, rules, text};
-use crate::input::{Reason, Spot, read_text};
+use crate::input::{MistakeKind, Spot, read_text};
 use crate::words::nearest;
 use std::path::Path;
 
 /// Longest scene file (bytes); a list of positions may be long.
 const LONGEST: u64 = 64 << 20;
 
-impl Values {
+impl SceneValues {
     /// Reads the text of a scene for one of some methods, with overrides `section.key=value`. `file` is its name in errors.
     ///
     /// # Errors
@@ -21,7 +21,7 @@ impl Values {
         text: &str,
         overrides: &[String],
         methods: &[&'static Vocabulary],
-    ) -> Result<Values, SceneErrors> {
+    ) -> Result<SceneValues, SceneErrors> {
         text::read(file, text, overrides, methods)?.checked()
     }
 
@@ -29,7 +29,7 @@ impl Values {
     ///
     /// # Errors
     /// [`SceneErrors`]: every mistake of the overrides, which cannot change the method.
-    pub fn with(&self, overrides: &Overrides) -> Result<Values, SceneErrors> {
+    pub fn with(&self, overrides: &Overrides) -> Result<SceneValues, SceneErrors> {
         let mut values = self.clone();
         values.values.append(&mut values.set_aside);
         for (key, value) in overrides.iter() {
@@ -37,7 +37,7 @@ impl Values {
         }
         if values.given(&METHOD) != self.given(&METHOD) {
             let error = values.spot(&METHOD).error(
-                Reason::Contradiction,
+                MistakeKind::Contradiction,
                 "an override cannot change the method of a scene that is already read",
             );
             values.errors.push(error);
@@ -46,7 +46,7 @@ impl Values {
     }
 
     /// Applies all rules to the values.
-    fn checked(mut self) -> Result<Values, SceneErrors> {
+    fn checked(mut self) -> Result<SceneValues, SceneErrors> {
         rules::apply(&mut self);
         std::mem::take(&mut self.errors).none_of(&self.file)?;
         Ok(self)
@@ -60,8 +60,8 @@ impl Values {
         what: &str,
         overrides: &[String],
         methods: &[&'static Vocabulary],
-    ) -> Result<Values, SceneErrors> {
-        Values::parse(what, &Values::text(what, methods)?, overrides, methods)
+    ) -> Result<SceneValues, SceneErrors> {
+        SceneValues::parse(what, &SceneValues::text(what, methods)?, overrides, methods)
     }
 
     /// Reads the text of a scene by a preset's name or a file's path. A program that needs the scene several times should parse this text each
@@ -81,7 +81,7 @@ impl Values {
                 std::io::ErrorKind::NotFound => "there is no such preset and no such file".to_owned(),
                 _ => format!("cannot be read: {cause}"),
             };
-            let error = nowhere.error(Reason::Unreadable, message);
+            let error = nowhere.error(MistakeKind::Unreadable, message);
             let error = error.expecting(format!("a file, or one of {}", names.join(", ")));
             match nearest(what, presets().map(|preset| preset.name)) {
                 Some(name) => error.advising(format!("did you mean {name}?")),

@@ -3,12 +3,12 @@
 use super::SceneError;
 use super::disc_keys::{COUNT, GENERATE, OMEGAS, PACKING_FRACTION, POSITIONS, RADII, VELOCITIES};
 use super::domain::periodic_as;
-use super::keys::{Fallback, Key, Value};
-use super::values::Values;
-use crate::input::Reason;
+use super::keys::{Fallback, Key, KeyValue};
+use super::values::SceneValues;
+use crate::input::MistakeKind;
 
 /// Applies all rules to the values, sets aside values that overrides make obsolete, and records every mistake.
-pub(super) fn apply(values: &mut Values) {
+pub(super) fn apply(values: &mut SceneValues) {
     rivals(values);
     unused(values);
     missing(values);
@@ -22,7 +22,7 @@ fn quoted(keys: &[&Key], between: &str) -> String {
     keys.iter().map(|key| format!("`{}`", key.path())).collect::<Vec<_>>().join(between)
 }
 
-fn rivals(values: &mut Values) {
+fn rivals(values: &mut SceneValues) {
     for rivals in values.vocabulary.keys.rivals.iter().copied().flatten() {
         if values.applies(rivals.used) != Some(true) {
             continue;
@@ -42,7 +42,7 @@ fn rivals(values: &mut Values) {
             let last = given.iter().max_by_key(|key| values.spot(key).place).unwrap_or(&given[0]);
             let error = values
                 .spot(last)
-                .error(Reason::Contradiction, format!("{} exclude each other", quoted(&given, " and ")))
+                .error(MistakeKind::Contradiction, format!("{} exclude each other", quoted(&given, " and ")))
                 .expecting(format!("one of {}", quoted(rivals.keys, ", ")));
             values.errors.push(error);
         }
@@ -50,14 +50,14 @@ fn rivals(values: &mut Values) {
         if given.is_empty() && rivals.needed && !faulty {
             let error = values
                 .spot(rivals.keys[0])
-                .error(Reason::Missing, format!("neither {} is given", quoted(rivals.keys, " nor ")))
+                .error(MistakeKind::Missing, format!("neither {} is given", quoted(rivals.keys, " nor ")))
                 .expecting(rivals.keys.iter().map(|key| key.expected()).collect::<Vec<_>>().join("; or "));
             values.errors.push(error);
         }
     }
 }
 
-fn unused(values: &mut Values) {
+fn unused(values: &mut SceneValues) {
     for key in values.vocabulary.keys.keys() {
         let Some((by, choices)) = key.used else { continue };
         let (Some(choice), Some(entry)) = (values.choice(by), values.entry(key)) else { continue };
@@ -75,19 +75,19 @@ fn unused(values: &mut Values) {
         };
         let error = entry
             .spot
-            .error(Reason::Unused, format!("`{}` has no effect with {chosen}", key.path()))
+            .error(MistakeKind::Unused, format!("`{}` has no effect with {chosen}", key.path()))
             .advising(format!("leave it out; it is used with {}", choices.join(", ")));
         values.errors.push(error);
     }
 }
 
-fn missing(values: &mut Values) {
+fn missing(values: &mut SceneValues) {
     for key in values.vocabulary.keys.keys() {
         let absent = !values.gives(key) && !values.is_faulty(key);
         if key.fallback == Fallback::Required && absent && values.is_used(key) {
             let error = values
                 .spot(key)
-                .error(Reason::Missing, format!("`{}` is missing", key.path()))
+                .error(MistakeKind::Missing, format!("`{}` is missing", key.path()))
                 .expecting(key.expected())
                 .advising(key.doc);
             values.errors.push(error);
@@ -96,7 +96,7 @@ fn missing(values: &mut Values) {
 }
 
 /// Inconsistencies between the keys of a start.
-pub fn disagreements(values: &Values) -> Vec<SceneError> {
+pub fn disagreements(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = Vec::new();
     let choice = values.choice(&GENERATE);
     match choice.as_deref() {
@@ -106,7 +106,7 @@ pub fn disagreements(values: &Values) -> Vec<SceneError> {
             for key in [&COUNT, &PACKING_FRACTION] {
                 if !values.gives(key) && !values.is_faulty(key) {
                     let error =
-                        values.spot(key).error(Reason::Missing, format!("`{}` is missing", key.path()));
+                        values.spot(key).error(MistakeKind::Missing, format!("`{}` is missing", key.path()));
                     errors.push(error.expecting(key.expected()).advising(key.doc));
                 }
             }
@@ -125,23 +125,23 @@ pub fn disagreements(values: &Values) -> Vec<SceneError> {
 }
 
 /// Reports lists that do not have one value for each grain.
-fn lengths_of_lists(values: &Values) -> Vec<SceneError> {
+fn lengths_of_lists(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = Vec::new();
-    let Some(Value::Pairs(positions)) = values.given(&POSITIONS) else { return errors };
+    let Some(KeyValue::Pairs(positions)) = values.given(&POSITIONS) else { return errors };
     if positions.is_empty() {
-        errors.push(values.spot(&POSITIONS).error(Reason::Range, "`particles.positions` lists no disc"));
+        errors.push(values.spot(&POSITIONS).error(MistakeKind::Range, "`particles.positions` lists no disc"));
     }
     for key in [&VELOCITIES, &OMEGAS, &RADII] {
         let length = match values.given(key) {
-            Some(Value::Pairs(list)) => list.len(),
-            Some(Value::Numbers(list)) => list.len(),
+            Some(KeyValue::Pairs(list)) => list.len(),
+            Some(KeyValue::Numbers(list)) => list.len(),
             _ => continue,
         };
         let count = positions.len();
         if length != count {
             let message =
                 format!("`{}` lists {length} values, but `particles.positions` lists {count}", key.path());
-            let error = values.spot(key).error(Reason::Contradiction, message);
+            let error = values.spot(key).error(MistakeKind::Contradiction, message);
             errors.push(error.expecting(format!("{count} values, one for each grain")));
         }
     }

@@ -1,11 +1,11 @@
 //! Start files of scenes.
 
-use crate::io::extxyz::{Frame, ReadError, Which, read};
+use crate::io::extxyz::{FrameChoice, ParticleFrame, XyzReadError, read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 /// Path and last frame of a start file, shared by all runs of a scene and filled by the first.
-pub(super) type SharedFrame = Arc<OnceLock<(PathBuf, Frame)>>;
+pub(super) type SharedFrame = Arc<OnceLock<(PathBuf, ParticleFrame)>>;
 
 /// Start file, read once by the runs that share it.
 #[derive(Clone, Debug, Default)]
@@ -34,12 +34,12 @@ impl StartFile {
     ///
     /// # Errors
     /// [`ReadError`] if the file cannot be read or has no frame.
-    pub(crate) fn last_frame(&self) -> Result<Frame, ReadError> {
+    pub(crate) fn last_frame(&self) -> Result<ParticleFrame, XyzReadError> {
         let known = self.shared.as_ref().and_then(|shared| shared.get());
         if let Some((_, frame)) = known.filter(|(path, _)| *path == self.path) {
             return Ok(frame.clone());
         }
-        let frame = read(&self.path, Which::Last)?;
+        let frame = read(&self.path, FrameChoice::Last)?;
         if let Some(shared) = &self.shared {
             #[expect(clippy::let_underscore_must_use, reason = "another thread has read the same meanwhile")]
             let _ = shared.set((self.path.clone(), frame.clone()));

@@ -4,7 +4,7 @@ use crate::number::significant;
 
 /// Target error of the mean of a quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Target {
+pub struct MeanTarget {
     /// Name of the quantity.
     pub quantity: String,
     /// Half-width of the 95 % confidence interval.
@@ -57,7 +57,7 @@ impl std::fmt::Display for Width {
     }
 }
 
-impl Target {
+impl MeanTarget {
     /// Text in TOML, in the shortest form that reads back to the same bits.
     pub fn to_toml(&self) -> String {
         let error = match self.error {

@@ -1,6 +1,6 @@
 //! Tests of the keys of every method.
 
-use super::keys::Kind::{Number, Numbers, Pair, Pairs};
+use super::keys::KeyValueKind::{Number, Numbers, Pair, Pairs};
 use super::{Fallback, SECTIONS};
 use crate::method::METHODS;
 

@@ -2,12 +2,12 @@
 
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
-use super::keys::{Fault, Key, Value};
+use super::keys::{Key, KeyValue, ValueFault};
 use super::overrides::{as_typed, typed};
-use super::unknown::{Help, Unknown};
-use super::values::{Entry, Values, Vocabulary};
+use super::unknown::{KeyHelp, UnknownKey};
+use super::values::{SceneValues, ValueEntry, Vocabulary};
 use super::{SceneError, SceneErrors};
-use crate::input::{InputText, Reason, Spot};
+use crate::input::{InputText, MistakeKind, Spot};
 use crate::quoted::quoted;
 use crate::words::nearest;
 use toml::Spanned;
@@ -33,7 +33,7 @@ pub(super) fn read(
     text: &str,
     overrides: &[String],
     methods: &[&'static Vocabulary],
-) -> Result<Values, SceneErrors> {
+) -> Result<SceneValues, SceneErrors> {
     let text = &InputText::new(file, text);
     let table = text.table()?;
     super::format_1::refuse(&table, text, methods)?;
@@ -44,12 +44,12 @@ pub(super) fn read(
         // Without a method's name the file is read as if it named the first one; the missing name is reported too.
         None => methods.first().copied().ok_or_else(|| unknown_method("", &Spot::default(), methods))?,
     };
-    let mut values = Values::none(file, vocabulary, methods);
-    let source = Source { text: Some(text), file, keys: &vocabulary.keys, methods };
+    let mut values = SceneValues::none(file, vocabulary, methods);
+    let source = ValueSource { text: Some(text), file, keys: &vocabulary.keys, methods };
     for (name, value) in &table {
         source.top(&mut values, name, value);
     }
-    let version = values.errors.named().iter().find(|error| error.reason == Reason::Format);
+    let version = values.errors.named().iter().find(|error| error.reason == MistakeKind::Format);
     if let Some(error) = version.cloned() {
         // Another version has other keys, so further errors may be spurious.
         return Err(error.into());
@@ -63,7 +63,7 @@ pub(super) fn read(
 fn unknown_method(name: &str, spot: &Spot, methods: &[&'static Vocabulary]) -> SceneErrors {
     let names: Vec<String> = methods.iter().map(|method| format!("\"{}\"", method.keys.method)).collect();
     let error = spot
-        .error(Reason::Type, format!("`{}` is the text \"{}\"", METHOD.path(), quoted(name)))
+        .error(MistakeKind::Type, format!("`{}` is the text \"{}\"", METHOD.path(), quoted(name)))
         .expecting(format!("kind = {}", names.join(" or ")));
     match nearest(name, methods.iter().map(|method| method.keys.method)) {
         Some(nearest) => error.advising(format!("did you mean \"{nearest}\"?")).into(),
@@ -72,15 +72,15 @@ fn unknown_method(name: &str, spot: &Spot, methods: &[&'static Vocabulary]) -> S
 }
 
 /// Applies an override.
-fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary]) {
+fn override_with(values: &mut SceneValues, text: &str, methods: &[&'static Vocabulary]) {
     let file = format!("--set {text}");
     let spot = Spot { file: file.clone(), place: None };
     let Some((path, value)) = text.split_once('=') else {
-        let error = spot.error(Reason::Override, "an override needs a key and a value");
+        let error = spot.error(MistakeKind::Override, "an override needs a key and a value");
         return values.errors.push(error.expecting("section.key=value"));
     };
     let (path, value) = (path.trim(), as_typed(value.trim()));
-    let source = Source { text: None, file: &file, keys: &values.vocabulary.keys, methods };
+    let source = ValueSource { text: None, file: &file, keys: &values.vocabulary.keys, methods };
     match path.split_once('.') {
         Some((section, key)) => match SECTIONS.iter().find(|(name, _)| *name == section) {
             Some((name, _)) => source.key(values, name, &Spanned::new(0..0, key.into()), &value),
@@ -91,24 +91,24 @@ fn override_with(values: &mut Values, text: &str, methods: &[&'static Vocabulary
 }
 
 /// Applies an override of a known key, with the checks and messages of a typed one.
-pub(super) fn set(values: &mut Values, key: &Key, value: &Value) {
+pub(super) fn set(values: &mut SceneValues, key: &Key, value: &KeyValue) {
     let text = typed(value);
     let file = format!("--set {}={text}", key.path());
     let methods = values.methods.clone();
-    let source = Source { text: None, file: &file, keys: &values.vocabulary.keys, methods: &methods };
+    let source = ValueSource { text: None, file: &file, keys: &values.vocabulary.keys, methods: &methods };
     let name = Spanned::new(0..0, key.name.into());
     source.key(values, key.section, &name, &as_typed(&text));
 }
 
 /// Source of values: the file, or an option of the command line.
-struct Source<'s> {
+struct ValueSource<'s> {
     text: Option<&'s InputText<'s>>,
     file: &'s str,
     keys: &'static KeySet,
     methods: &'s [&'static Vocabulary],
 }
 
-impl Source<'_> {
+impl ValueSource<'_> {
     fn spot(&self, offset: usize) -> Spot {
         match self.text {
             Some(text) => text.spot(offset),
@@ -119,7 +119,7 @@ impl Source<'_> {
     /// Reads a key or section at the head of the file.
     fn top(
         &self,
-        values: &mut Values,
+        values: &mut SceneValues,
         name: &Spanned<std::borrow::Cow<'_, str>>,
         value: &Spanned<DeValue<'_>>,
     ) {
@@ -144,20 +144,20 @@ impl Source<'_> {
             None => {
                 values.faulty.extend(self.keys.section(section).map(Key::id));
                 let spot = Spot { file: self.file.to_owned(), place };
-                let error = spot.error(Reason::Type, format!("`{section}` is not a table"));
+                let error = spot.error(MistakeKind::Type, format!("`{section}` is not a table"));
                 values.errors.push(error.expecting(format!("[{section}], and keys in the lines below it")));
             }
         }
     }
 
-    fn unknown_section(&self, values: &mut Values, name: &Spanned<std::borrow::Cow<'_, str>>) {
+    fn unknown_section(&self, values: &mut SceneValues, name: &Spanned<std::borrow::Cow<'_, str>>) {
         if !values.errors.has_room() {
             return values.errors.count();
         }
         let names = SECTIONS.map(|(name, _)| name);
         let mut error = self
             .spot(name.span().start)
-            .error(Reason::Unknown, format!("unknown section [{}]", quoted(name.get_ref())))
+            .error(MistakeKind::Unknown, format!("unknown section [{}]", quoted(name.get_ref())))
             .expecting(names.map(|name| format!("[{name}]")).join(" "));
         if let Some(nearest) = nearest(name.get_ref(), names) {
             error = error.advising(format!("did you mean [{nearest}]?"));
@@ -169,7 +169,7 @@ impl Source<'_> {
 
     fn key(
         &self,
-        values: &mut Values,
+        values: &mut SceneValues,
         section: &'static str,
         name: &Spanned<std::borrow::Cow<'_, str>>,
         value: &Spanned<DeValue<'_>>,
@@ -182,7 +182,7 @@ impl Source<'_> {
                 let elements = value.get_ref().as_array().into_iter().flatten();
                 let places =
                     |text: &InputText<'_>| elements.map(|item| text.place(item.span().start)).collect();
-                let entry = Entry {
+                let entry = ValueEntry {
                     value: read,
                     spot: self.spot(name.span().start),
                     items: self.text.map(places).unwrap_or_default(),
@@ -200,7 +200,7 @@ impl Source<'_> {
 
     fn unknown_key(
         &self,
-        values: &mut Values,
+        values: &mut SceneValues,
         section: &'static str,
         name: &Spanned<std::borrow::Cow<'_, str>>,
     ) {
@@ -213,8 +213,8 @@ impl Source<'_> {
             if section.is_empty() && self.text.is_none() { "without a section".to_owned() } else { place };
         let mut error = self
             .spot(name.span().start)
-            .error(Reason::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
-        let unknown = Unknown {
+            .error(MistakeKind::Unknown, format!("unknown key `{}` {place}", quoted(name.get_ref())));
+        let unknown = UnknownKey {
             keys: self.keys,
             methods: self.methods,
             section,
@@ -222,21 +222,23 @@ impl Source<'_> {
             overrides: self.text.is_none(),
         };
         error = match unknown.help() {
-            Help::Advice(advice, meant) => {
+            KeyHelp::Advice(advice, meant) => {
                 // A misspelt key is not missing.
                 values.faulty.extend(meant.iter().map(|key| key.id()));
                 error.advising(advice)
             }
-            Help::Expected(keys) => error.expecting(keys),
+            KeyHelp::Expected(keys) => error.expecting(keys),
         };
         values.errors.push(error);
     }
 
-    fn fault(&self, key: &Key, fault: &Fault) -> SceneError {
-        let format = key.id() == FORMAT.id() && fault.reason == Reason::Range;
+    fn fault(&self, key: &Key, fault: &ValueFault) -> SceneError {
+        let format = key.id() == FORMAT.id() && fault.reason == MistakeKind::Range;
         let (reason, message) = match fault.reason {
-            Reason::Range if format => (Reason::Format, format!("unknown scene format: {}", fault.found)),
-            Reason::Range => (Reason::Range, format!("`{}` cannot be {}", key.path(), fault.found)),
+            MistakeKind::Range if format => {
+                (MistakeKind::Format, format!("unknown scene format: {}", fault.found))
+            }
+            MistakeKind::Range => (MistakeKind::Range, format!("`{}` cannot be {}", key.path(), fault.found)),
             other => (other, format!("`{}` is {}", key.path(), fault.found)),
         };
         let error = self.spot(fault.span.start).error(reason, message).expecting(key.expected());

@@ -8,7 +8,7 @@ use crate::words::nearest;
 
 /// Key that a method lacks.
 #[derive(Clone, Copy)]
-pub(super) struct Unknown<'u> {
+pub(super) struct UnknownKey<'u> {
     pub(super) keys: &'static KeySet,
     /// All methods.
     pub(super) methods: &'u [&'static Vocabulary],
@@ -20,18 +20,18 @@ pub(super) struct Unknown<'u> {
 }
 
 /// Help for an unknown key.
-pub(super) enum Help {
+pub(super) enum KeyHelp {
     /// Sentence, and the keys that may be meant.
     Advice(String, Vec<&'static Key>),
     /// Keys of the section, since none is similar.
     Expected(String),
 }
 
-impl Unknown<'_> {
+impl UnknownKey<'_> {
     /// Most specific help available, in this order: the method's own advice, methods that have the key, a longer name in the section, a section
     /// that has the name, the most similar name.
-    pub(super) fn help(self) -> Help {
-        let sentence = |text: String| Help::Advice(text, vec![]);
+    pub(super) fn help(self) -> KeyHelp {
+        let sentence = |text: String| KeyHelp::Advice(text, vec![]);
         let (path, method) = (self.path(), self.keys.method);
         if let Some((_, why)) = self.keys.advice.iter().find(|(key, _)| *key == path) {
             return sentence((*why).to_owned());
@@ -59,12 +59,12 @@ impl Unknown<'_> {
                 "" => "at the top of the file".to_owned(),
                 section => format!("in [{section}]"),
             };
-            return Help::Advice(format!("`{}` belongs {home}", key.name), vec![key]);
+            return KeyHelp::Advice(format!("`{}` belongs {home}", key.name), vec![key]);
         }
         let in_section = || self.keys.section(self.section).map(|key| key.name);
         if let Some(key) = nearest(self.name, in_section()).and_then(|name| self.keys.key(self.section, name))
         {
-            return Help::Advice(format!("did you mean `{}`?", key.name), vec![key]);
+            return KeyHelp::Advice(format!("did you mean `{}`?", key.name), vec![key]);
         }
         match in_section().next() {
             None => sentence(format!(
@@ -72,7 +72,7 @@ impl Unknown<'_> {
                 METHOD.path(),
                 self.section
             )),
-            Some(_) => Help::Expected(in_section().collect::<Vec<_>>().join(", ")),
+            Some(_) => KeyHelp::Expected(in_section().collect::<Vec<_>>().join(", ")),
         }
     }
 
@@ -104,9 +104,9 @@ impl Unknown<'_> {
     }
 }
 
-fn did_you_mean(keys: Vec<&'static Key>) -> Help {
+fn did_you_mean(keys: Vec<&'static Key>) -> KeyHelp {
     let paths: Vec<String> = keys.iter().map(|key| format!("`{}`", key.path())).collect();
-    Help::Advice(format!("did you mean {}?", paths.join(" or ")), keys)
+    KeyHelp::Advice(format!("did you mean {}?", paths.join(" or ")), keys)
 }
 
 #[cfg(test)]

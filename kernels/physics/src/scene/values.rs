@@ -2,9 +2,9 @@
 
 use super::SceneError;
 use super::key_set::KeySet;
-use super::keys::{Fallback, Key, Use, Value};
+use super::keys::{Fallback, Key, KeyValue, Use};
 use super::start_file::SharedFrame;
-use crate::input::{Mistakes, Place, Spot};
+use crate::input::{MistakeList, Spot, TextLocation};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
 
@@ -26,7 +26,7 @@ impl Preset {
 
 /// Key of format 1 with its equivalent in format 2.
 #[derive(Clone, Copy, Debug)]
-pub struct Renamed {
+pub struct RenamedKey {
     /// `section.key` of format 1.
     pub old: &'static str,
     /// Equivalent in format 2.
@@ -39,67 +39,67 @@ pub struct Vocabulary {
     /// Keys of the method.
     pub keys: KeySet,
     /// Rules between keys; each returns every mistake that it finds.
-    pub rules: &'static [fn(&Values) -> Vec<SceneError>],
+    pub rules: &'static [fn(&SceneValues) -> Vec<SceneError>],
     /// Presets of the method.
     pub presets: &'static [Preset],
     /// Keys that format 1 spelt differently.
-    pub renamed: &'static [Renamed],
+    pub renamed: &'static [RenamedKey],
 }
 
 pub(super) type Id = (&'static str, &'static str);
 
 /// Value with its location.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
-    pub(super) value: Value,
+pub(super) struct ValueEntry {
+    pub(super) value: KeyValue,
     pub(super) spot: Spot,
     /// Locations of the items of a list; empty if they come from an override.
-    pub(super) items: Vec<Place>,
+    pub(super) items: Vec<TextLocation>,
     pub(super) overrides: bool,
 }
 
 /// Values of a scene as given, with their locations.
 #[derive(Clone, Debug)]
-pub struct Values {
+pub struct SceneValues {
     pub(super) file: String,
     pub(super) vocabulary: &'static Vocabulary,
     /// Methods that the scene could have named, for help with unknown keys.
     pub(super) methods: Vec<&'static Vocabulary>,
-    pub(super) values: BTreeMap<Id, Entry>,
+    pub(super) values: BTreeMap<Id, ValueEntry>,
     /// Values of the text that overrides made obsolete; further overrides may restore them.
-    pub(super) set_aside: BTreeMap<Id, Entry>,
-    pub(super) sections: BTreeMap<&'static str, Place>,
+    pub(super) set_aside: BTreeMap<Id, ValueEntry>,
+    pub(super) sections: BTreeMap<&'static str, TextLocation>,
     /// Keys that were given with an invalid value.
     pub(super) faulty: BTreeSet<Id>,
-    pub(super) errors: Mistakes,
+    pub(super) errors: MistakeList,
     /// Frame of the start file, if other scenes share it.
     pub(super) start: Option<SharedFrame>,
 }
 
-impl Values {
+impl SceneValues {
     /// Makes all clones, and scenes [with the start of this one](Self::with_start_of), read the start file once.
     #[must_use]
-    pub fn sharing_start(self) -> Values {
-        Values { start: Some(SharedFrame::default()), ..self }
+    pub fn sharing_start(self) -> SceneValues {
+        SceneValues { start: Some(SharedFrame::default()), ..self }
     }
 
     /// Takes the start file as another scene has read it.
     #[must_use]
-    pub fn with_start_of(self, other: &Values) -> Values {
-        Values { start: other.start.clone(), ..self }
+    pub fn with_start_of(self, other: &SceneValues) -> SceneValues {
+        SceneValues { start: other.start.clone(), ..self }
     }
 
     /// Values without a text: the program that made the scene supplies everything.
-    pub(crate) fn of_no_text(vocabulary: &'static Vocabulary) -> Values {
-        Values::none("scene", vocabulary, &[])
+    pub(crate) fn of_no_text(vocabulary: &'static Vocabulary) -> SceneValues {
+        SceneValues::none("scene", vocabulary, &[])
     }
 
     pub(super) fn none(
         file: &str,
         vocabulary: &'static Vocabulary,
         methods: &[&'static Vocabulary],
-    ) -> Values {
-        Values {
+    ) -> SceneValues {
+        SceneValues {
             file: file.to_owned(),
             vocabulary,
             methods: methods.to_vec(),
@@ -107,7 +107,7 @@ impl Values {
             set_aside: BTreeMap::new(),
             sections: BTreeMap::new(),
             faulty: BTreeSet::new(),
-            errors: Mistakes::default(),
+            errors: MistakeList::default(),
             start: None,
         }
     }
@@ -142,7 +142,7 @@ impl Values {
         self.set_aside.extend(self.values.remove_entry(&key.id()));
     }
 
-    pub(super) fn entry(&self, key: &Key) -> Option<&Entry> {
+    pub(super) fn entry(&self, key: &Key) -> Option<&ValueEntry> {
         self.values.get(&key.id())
     }
 
@@ -152,7 +152,7 @@ impl Values {
     }
 
     /// Value given for a key, if valid.
-    pub fn given(&self, key: &Key) -> Option<&Value> {
+    pub fn given(&self, key: &Key) -> Option<&KeyValue> {
         self.entry(key).map(|entry| &entry.value)
     }
 
@@ -175,7 +175,7 @@ impl Values {
     }
 
     /// Value of a key, given or by default; none if it has neither, or an invalid one.
-    pub fn value(&self, key: &Key) -> Option<Value> {
+    pub fn value(&self, key: &Key) -> Option<KeyValue> {
         match (self.given(key), key.fallback) {
             (Some(value), _) => Some(value.clone()),
             (None, Fallback::Is(text)) if !self.is_faulty(key) => {
@@ -189,7 +189,7 @@ impl Values {
     /// Value of a key, given or by default, if it is a number.
     pub fn number(&self, key: &Key) -> Option<f64> {
         match self.value(key) {
-            Some(Value::Number(value)) => Some(value),
+            Some(KeyValue::Number(value)) => Some(value),
             _ => None,
         }
     }
@@ -205,7 +205,7 @@ impl Values {
             }
         }
         match self.value(key) {
-            Some(Value::Word(word)) => Some(word),
+            Some(KeyValue::Word(word)) => Some(word),
             _ => None,
         }
     }

@@ -1,19 +1,20 @@
 //! Checks of the initial discs: inside the box, without overlap.
 
-use super::Stated;
+use super::StatedStart;
 use crate::domain::Domain;
-use crate::near::Near;
+use crate::near::NeighbourSearch;
 use crate::number::significant;
-use crate::particles::{Kind, Particles};
+use crate::particles::{ParticleKind, Particles};
 use crate::scene::{
-    FILE, GENERATE, POSITIONS, Reason, SceneError, Spot, Start, WALL_AMPLITUDE, WALL_POSITIONS, WallMotion,
+    DiscStart, FILE, GENERATE, MistakeKind, POSITIONS, SceneError, Spot, WALL_AMPLITUDE, WALL_POSITIONS,
+    WallMotion,
 };
 
 /// Largest number of overlaps or discs outside that are listed.
 const NAMED: usize = 5;
 
 /// Lists discs outside the box.
-pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> Vec<SceneError> {
+pub fn outside(stated: &StatedStart<'_>, domain: &Domain, particles: &Particles) -> Vec<SceneError> {
     let [[left, bottom], [right, top]] =
         [domain.corner(), [domain.origin[0] + domain.length(0), domain.origin[1] + domain.length(1)]];
     let sweep = match stated.walls {
@@ -34,14 +35,14 @@ pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> V
         if !domain.contains(disc.position) {
             let message = format!("{what} {} at ({x}, {y}) is outside the box", disc.id);
             let inside = format!("a position from ({left}, {bottom}) to below ({right}, {top})");
-            errors.push(spot.error(Reason::Outside, message).expecting(inside));
-        } else if disc.kind == Kind::Wall && leaves(disc.place()) {
+            errors.push(spot.error(MistakeKind::Outside, message).expecting(inside));
+        } else if disc.kind == ParticleKind::Wall && leaves(disc.place()) {
             let message = format!(
                 "{what} {} at ({x}, {y}) oscillates by ({}, {}) out of the box, which extends from ({left}, {bottom}) to \
                  ({right}, {top})",
                 disc.id, sweep[0], sweep[1]
             );
-            let error = stated.spot(&WALL_AMPLITUDE).error(Reason::Outside, message);
+            let error = stated.spot(&WALL_AMPLITUDE).error(MistakeKind::Outside, message);
             errors.push(error.advising("lower the amplitude, or place the walls farther inside"));
         }
         if errors.len() == NAMED {
@@ -52,10 +53,10 @@ pub fn outside(stated: &Stated<'_>, domain: &Domain, particles: &Particles) -> V
 }
 
 /// Noun for a disc of a kind.
-pub(crate) fn noun(kind: Kind) -> &'static str {
+pub(crate) fn noun(kind: ParticleKind) -> &'static str {
     match kind {
-        Kind::Grain => "disc",
-        Kind::Wall => "wall disc",
+        ParticleKind::Grain => "disc",
+        ParticleKind::Wall => "wall disc",
     }
 }
 
@@ -65,20 +66,20 @@ pub(crate) fn readable(number: f64) -> f64 {
 }
 
 /// Location where a disc is listed, or of the key that created it.
-fn spot_of(stated: &Stated<'_>, particles: &Particles, number: usize) -> Spot {
+fn spot_of(stated: &StatedStart<'_>, particles: &Particles, number: usize) -> Spot {
     match *stated.start {
-        Start::List(_) => match number.checked_sub(particles.grain_count()) {
+        DiscStart::List(_) => match number.checked_sub(particles.grain_count()) {
             None => stated.item_spot(&POSITIONS, number),
             Some(number) => stated.item_spot(&WALL_POSITIONS, number),
         },
-        Start::File(_) => stated.spot(&FILE),
+        DiscStart::File(_) => stated.spot(&FILE),
         _ => stated.spot(&GENERATE),
     }
 }
 
 /// Pairs that overlap too deeply: their number, and the deepest ones sorted by depth.
 #[derive(Default)]
-struct Deep {
+struct DeepOverlaps {
     worst: Vec<(usize, usize, f64)>,
     count: usize,
 }
@@ -86,7 +87,7 @@ struct Deep {
 /// Largest number of pairs counted: if all discs overlap, pairs grow with the square of their number.
 const COUNTED: usize = 1_000_000;
 
-impl Deep {
+impl DeepOverlaps {
     fn add(&mut self, pair: (usize, usize, f64)) {
         self.count += 1;
         let at = self.worst.partition_point(|(_, _, penetration)| *penetration >= pair.2);
@@ -106,7 +107,7 @@ fn visit_overlaps(
     mut visit: impl FnMut(usize, usize, f64) -> bool,
 ) {
     let Some([_, largest]) = particles.radii() else { return };
-    let mut near = Near::new(*domain, 2.0 * largest);
+    let mut near = NeighbourSearch::new(*domain, 2.0 * largest);
     let discs = particles.all();
     for (number, disc) in discs.iter().enumerate() {
         let position = domain.wrapped(disc.place());
@@ -139,18 +140,18 @@ pub(crate) fn deepest_overlap(
 
 /// Reports pairs that overlap deeper than `limit`, a fraction of the sum of the radii; `reason` explains why they must not.
 pub(crate) fn overlaps(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     particles: &Particles,
     limit: f64,
     reason: &str,
 ) -> Vec<SceneError> {
-    let (discs, mut deep) = (particles.all(), Deep::default());
+    let (discs, mut deep) = (particles.all(), DeepOverlaps::default());
     visit_overlaps(domain, particles, limit, |first, second, penetration| {
         deep.add((first, second, penetration));
         deep.count < COUNTED
     });
-    let Deep { worst, count } = deep;
+    let DeepOverlaps { worst, count } = deep;
     let mut errors: Vec<SceneError> = Vec::new();
     for (first, second, penetration) in worst {
         let [a, b] = [first, second].map(|number| {
@@ -165,7 +166,7 @@ pub(crate) fn overlaps(
             significant(penetration * reach, 4)
         );
         let least = format!("centres at least {} apart", significant((1.0 - limit) * reach, 9));
-        errors.push(spot_of(stated, particles, second).error(Reason::Overlap, message).expecting(least));
+        errors.push(spot_of(stated, particles, second).error(MistakeKind::Overlap, message).expecting(least));
     }
     if let (Some(last), true) = (errors.last_mut(), count > NAMED) {
         let more = count - NAMED;

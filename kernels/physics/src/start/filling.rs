@@ -1,12 +1,12 @@
 //! Common parts of all placements: limits on the number of discs, one disc, and a region filled at random.
 
-use super::Stated;
+use super::StatedStart;
 use crate::domain::Domain;
 use crate::memory::{self, Available};
 use crate::number::significant;
-use crate::particles::{Kind, Particle, in_space};
-use crate::placement::{Filling, random, stir};
-use crate::scene::{Amount, COUNT, GENERATE, Grains, Key, PACKING_FRACTION, Reason, SceneError};
+use crate::particles::{Particle, ParticleKind, in_space};
+use crate::placement::{RandomPlacement, random, stir};
+use crate::scene::{Amount, COUNT, GENERATE, GeneratedDiscs, Key, MistakeKind, PACKING_FRACTION, SceneError};
 use std::f64::consts::PI;
 
 /// Largest number of discs of one kind, grains or walls: the ids of both kinds together have 32 bits.
@@ -18,7 +18,7 @@ pub(super) const COMPRESSED: f64 = 0.885;
 
 /// Checks, before anything is placed, that the machine has the memory to place the discs and to search for overlaps: each disc, and its entry in a
 /// map of squares whose size is a power of two.
-pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
+pub(super) fn placeable(stated: &StatedStart<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
     /// Size of an entry of the map, and of a disc in its square (bytes).
     const SQUARE: [f64; 2] = [25.0, 40.0];
     let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
@@ -32,13 +32,19 @@ pub(super) fn placeable(stated: &Stated<'_>, count: f64, key: &Key) -> Result<()
                 by.in_words(),
                 memory::in_words(bytes)
             );
-            Err(stated.spot(key).error(Reason::Memory, message).advising("take fewer discs"))
+            Err(stated.spot(key).error(MistakeKind::Memory, message).advising("take fewer discs"))
         }
         _ => Ok(()),
     }
 }
 
-pub(super) fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, mass]: [f64; 2]) -> Particle {
+pub(super) fn disc(
+    id: u32,
+    kind: ParticleKind,
+    position: [f64; 2],
+    radius: f64,
+    [unit, mass]: [f64; 2],
+) -> Particle {
     let share = radius / unit;
     Particle {
         id,
@@ -54,10 +60,10 @@ pub(super) fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64, [unit, 
 
 /// Number of grains that fill an area, up to a packing fraction.
 pub(super) fn grain_count(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     amount: Amount,
     open: f64,
-    grains: &Grains,
+    grains: &GeneratedDiscs,
     most: f64,
 ) -> Result<usize, SceneError> {
     let share = PI * grains.second.mean_square(grains.radius) / open;
@@ -66,7 +72,7 @@ pub(super) fn grain_count(
         Amount::PackingFraction(fraction) => ((fraction / share).round(), &PACKING_FRACTION),
     };
     let fraction = count * share;
-    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
+    let refuse = |message: String| stated.spot(key).error(MistakeKind::Placement, message);
     if count > MOST {
         return Err(refuse(format!(
             "{count} discs are more than the {MOST} that can be numbered",
@@ -99,19 +105,19 @@ pub(super) fn grain_count(
 }
 
 pub(super) fn fill(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     room: [[f64; 2]; 2],
     obstacles: &[Particle],
     count: usize,
-    grains: &Grains,
+    grains: &GeneratedDiscs,
 ) -> Result<Vec<Particle>, SceneError> {
-    let Grains { radius, spread, cut, second, mass, seed, .. } = *grains;
+    let GeneratedDiscs { radius, spread, cut, second, mass, seed, .. } = *grains;
     let cut = if spread > 0.0 { cut } else { 0.0 };
     let filling =
-        Filling { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
+        RandomPlacement { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
     let mut discs = random(&filling).map_err(|jammed| {
-        let error = stated.spot(&GENERATE).error(Reason::Placement, jammed.to_string());
+        let error = stated.spot(&GENERATE).error(MistakeKind::Placement, jammed.to_string());
         error.advising("lower count or packing_fraction, or enlarge the box")
     })?;
     // Walls absorb momentum, so it is balanced without walls only.

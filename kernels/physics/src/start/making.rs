@@ -3,20 +3,20 @@
 use super::compressing::compressed;
 use super::filling::{JAMMING, MOST, disc, fill, grain_count, placeable};
 use super::meshing::on_mesh;
-use super::{Stated, readable};
+use super::{StatedStart, readable};
 use crate::domain::Domain;
 use crate::number::significant;
-use crate::particles::{Kind, Particle, Particles, in_space};
-use crate::placement::{Row, hexagonal, row};
+use crate::particles::{Particle, ParticleKind, Particles, in_space};
+use crate::placement::{WallRow, hexagonal, row};
 use crate::quoted;
 use crate::scene::{
-    Amount, CLEAR_WIDTH, COUNT, FILE, FILL_HEIGHT, Grains, Key, Lining, List, ORIGIN, PERIODIC, Reason,
-    SIDES, SceneError, Speed, Start, StartFile, WALL_SPACING, WallMotion, Warning,
+    Amount, CLEAR_WIDTH, COUNT, DiscStart, FILE, FILL_HEIGHT, GeneratedDiscs, Key, List, MistakeKind, ORIGIN,
+    PERIODIC, SIDES, SceneError, Speed, StartFile, WALL_SPACING, WallLining, WallMotion, Warning,
 };
 
 /// Smallest and largest radius: those that the scene admits, or those found in a list or file.
-pub(crate) fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    let spread = |grains: &Grains| {
+pub(crate) fn radii(start: &DiscStart, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let spread = |grains: &GeneratedDiscs| {
         let cut = if grains.spread > 0.0 { grains.cut } else { 0.0 };
         let has_second = grains.second.share > 0.0;
         let low = if has_second { grains.radius.min(grains.second.radius) } else { grains.radius };
@@ -24,17 +24,17 @@ pub(crate) fn radii(start: &Start, found: Option<[f64; 2]>) -> Option<[f64; 2]> 
     };
     let with = |[low, high]: [f64; 2], radius: f64| [low.min(radius), high.max(radius)];
     match start {
-        Start::Random { grains, .. } | Start::Compressed { grains, .. } => Some(spread(grains)),
-        Start::Pipe { grains, lining, .. } | Start::Box { grains, lining, .. } => {
+        DiscStart::Random { grains, .. } | DiscStart::Compressed { grains, .. } => Some(spread(grains)),
+        DiscStart::Pipe { grains, lining, .. } | DiscStart::Box { grains, lining, .. } => {
             Some(with(spread(grains), lining.radius))
         }
-        Start::Hexagonal { grains, .. } | Start::Mesh { grains, .. } => Some([grains.radius; 2]),
-        Start::List(_) | Start::File(_) => found,
+        DiscStart::Hexagonal { grains, .. } | DiscStart::Mesh { grains, .. } => Some([grains.radius; 2]),
+        DiscStart::List(_) | DiscStart::File(_) => found,
     }
 }
 
 /// Initial state of a scene.
-pub struct Made {
+pub struct InitialState {
     /// Box.
     pub domain: Domain,
     /// Discs, wrapped into the box; walls have the initial velocity of their motion.
@@ -47,31 +47,31 @@ pub struct Made {
 ///
 /// # Errors
 /// [`SceneError`] if the start cannot be created.
-pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
+pub fn make(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
     let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
     resolved(stated, &domain, radii(stated.start, None))?;
     let mut warnings = Vec::new();
     let (domain, mut particles) = match stated.start {
-        Start::File(file) => (domain, from_file(stated, &domain, file, &mut warnings)?),
-        Start::List(list) => (domain, listed(list)),
-        Start::Hexagonal { count, packing_fraction, grains } => {
+        DiscStart::File(file) => (domain, from_file(stated, &domain, file, &mut warnings)?),
+        DiscStart::List(list) => (domain, listed(list)),
+        DiscStart::Hexagonal { count, packing_fraction, grains } => {
             placeable(stated, *count as f64, &COUNT)?;
             on_lattice(stated, *count, *packing_fraction, grains)
         }
-        Start::Random { amount, grains } => {
+        DiscStart::Random { amount, grains } => {
             let count = grain_count(stated, *amount, domain.area(), grains, JAMMING)?;
             let far = [0, 1].map(|axis| domain.origin[axis] + domain.length(axis));
             let discs = fill(stated, &domain, [domain.corner(), far], &[], count, grains)?;
             (domain, Particles::new(discs))
         }
-        Start::Mesh { amount, grains, spacing } => {
+        DiscStart::Mesh { amount, grains, spacing } => {
             (domain, on_mesh(stated, &domain, *amount, grains, *spacing)?)
         }
-        Start::Compressed { amount, grains } => (domain, compressed(stated, &domain, *amount, grains)?),
-        Start::Pipe { amount, grains, lining, clear_width } => {
+        DiscStart::Compressed { amount, grains } => (domain, compressed(stated, &domain, *amount, grains)?),
+        DiscStart::Pipe { amount, grains, lining, clear_width } => {
             (domain, pipe(stated, &domain, *amount, grains, lining, *clear_width)?)
         }
-        Start::Box { amount, grains, lining, fill_height } => {
+        DiscStart::Box { amount, grains, lining, fill_height } => {
             (domain, above_floor(stated, &domain, *amount, grains, lining, *fill_height)?)
         }
     };
@@ -83,7 +83,7 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     };
     resolved(stated, &domain, radii(stated.start, particles.radii()))?;
     let moving = |disc: &&Particle| {
-        disc.kind == Kind::Wall
+        disc.kind == ParticleKind::Wall
             && (disc.velocity != [0.0; 3] || disc.omega != 0.0)
             && disc.planar_velocity() != start_velocity
     };
@@ -103,15 +103,15 @@ pub fn make(stated: &Stated<'_>) -> Result<Made, SceneError> {
     }
     for disc in particles.all_mut() {
         disc.position = domain.wrapped(disc.position);
-        if disc.kind == Kind::Wall {
+        if disc.kind == ParticleKind::Wall {
             (disc.velocity, disc.omega) = (in_space(start_velocity), 0.0);
         }
     }
-    Ok(Made { domain, particles, warnings })
+    Ok(InitialState { domain, particles, warnings })
 }
 
 /// Checks that floating-point numbers resolve positions in the box far better than the smallest radius, if known.
-fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Result<(), SceneError> {
+fn resolved(stated: &StatedStart<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Result<(), SceneError> {
     /// Largest error of a position, relative to the smallest radius.
     const COARSEST: f64 = 1e-6;
     let Some([smallest, _]) = radii else { return Ok(()) };
@@ -127,7 +127,7 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
                 step = significant(step, 2),
                 smallest = significant(smallest, 6)
             );
-            let error = stated.spot(key).error(Reason::Geometry, message);
+            let error = stated.spot(key).error(MistakeKind::Geometry, message);
             return Err(error.advising("move the box nearer to the origin, or choose other units"));
         }
     }
@@ -136,18 +136,18 @@ fn resolved(stated: &Stated<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Re
 
 /// Discs of the last frame of a start file, whose box must be that of the scene.
 fn from_file(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     file: &StartFile,
     warnings: &mut Vec<Warning>,
 ) -> Result<Particles, SceneError> {
     let path = file.path();
     let frame = file.last_frame().map_err(|error| {
-        stated.spot(&FILE).error(Reason::StartFile, format!("the start file cannot be used: {error}"))
+        stated.spot(&FILE).error(MistakeKind::StartFile, format!("the start file cannot be used: {error}"))
     })?;
     if frame.particles.is_empty() {
         let message = format!("the start file {} contains no disc", quoted::path(path));
-        return Err(stated.spot(&FILE).error(Reason::StartFile, message));
+        return Err(stated.spot(&FILE).error(MistakeKind::StartFile, message));
     }
     for (found, here, key) in
         [(frame.cell, domain.lengths(), &SIDES), (frame.origin, domain.corner(), &ORIGIN)]
@@ -159,7 +159,7 @@ fn from_file(
                 key.path(),
                 quoted::path(path)
             );
-            let error = stated.spot(key).error(Reason::Contradiction, message);
+            let error = stated.spot(key).error(MistakeKind::Contradiction, message);
             return Err(error.expecting(format!("{} = {found:?}", key.name)));
         }
     }
@@ -169,7 +169,7 @@ fn from_file(
             domain.periodic(),
             quoted::path(path)
         );
-        let error = stated.spot(&PERIODIC).error(Reason::Contradiction, message);
+        let error = stated.spot(&PERIODIC).error(MistakeKind::Contradiction, message);
         return Err(error.expecting(format!("periodic = {found:?}")));
     }
     if frame.has_raised_ids {
@@ -196,18 +196,18 @@ fn listed(list: &List) -> Particles {
     let grains = grains.map(|((position, ((velocity, omega), radius)), id)| Particle {
         velocity: in_space(*velocity),
         omega: *omega,
-        ..disc(id, Kind::Grain, *position, *radius, of)
+        ..disc(id, ParticleKind::Grain, *position, *radius, of)
     });
     let walls = list.wall_positions.iter().zip(list.positions.len() as u32 + 1..);
-    let walls = walls.map(|(position, id)| disc(id, Kind::Wall, *position, list.wall_radius, of));
+    let walls = walls.map(|(position, id)| disc(id, ParticleKind::Wall, *position, list.wall_radius, of));
     Particles::new(grains.chain(walls).collect())
 }
 
 fn on_lattice(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     count: usize,
     packing_fraction: f64,
-    grains: &Grains,
+    grains: &GeneratedDiscs,
 ) -> (Domain, Particles) {
     // Velocities are those of discs of mass 1.
     let kt = match grains.speed {
@@ -228,11 +228,11 @@ fn on_lattice(
 
 /// Wall discs with ids after those of `count` grains.
 fn lined(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     rows: &[(f64, f64)],
     count: usize,
-    (lining, grains): (&Lining, &Grains),
+    (lining, grains): (&WallLining, &GeneratedDiscs),
 ) -> Result<Vec<Particle>, SceneError> {
     let each = domain.length(0) / lining.spacing;
     if each * rows.len() as f64 > MOST {
@@ -241,7 +241,7 @@ fn lined(
             each = significant(each, 5),
             MOST = significant(MOST, 4)
         );
-        return Err(stated.spot(&WALL_SPACING).error(Reason::Placement, message));
+        return Err(stated.spot(&WALL_SPACING).error(MistakeKind::Placement, message));
     }
     placeable(stated, each * rows.len() as f64 + count as f64, &WALL_SPACING)?;
     let share = lining.radius / grains.radius;
@@ -251,7 +251,7 @@ fn lined(
         let first_id = (count + walls.len()) as u32 + 1;
         walls.extend(row(
             domain,
-            &Row { y, shift, radius: lining.radius, spacing: lining.spacing, mass },
+            &WallRow { y, shift, radius: lining.radius, spacing: lining.spacing, mass },
             first_id,
         ));
     }
@@ -259,11 +259,11 @@ fn lined(
 }
 
 fn pipe(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     amount: Amount,
-    grains: &Grains,
-    lining: &Lining,
+    grains: &GeneratedDiscs,
+    lining: &WallLining,
     clear_width: f64,
 ) -> Result<Particles, SceneError> {
     let axis = domain.origin[1] + 0.5 * domain.length(1);
@@ -274,7 +274,7 @@ fn pipe(
             readable(2.0 * reach),
             domain.length(1)
         );
-        let error = stated.spot(&CLEAR_WIDTH).error(Reason::Outside, message);
+        let error = stated.spot(&CLEAR_WIDTH).error(MistakeKind::Outside, message);
         return Err(error.advising("raise the second of domain.sides, or lower clear_width"));
     }
     let count = grain_count(stated, amount, domain.length(0) * clear_width, grains, JAMMING)?;
@@ -288,11 +288,11 @@ fn pipe(
 }
 
 fn above_floor(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     amount: Amount,
-    grains: &Grains,
-    lining: &Lining,
+    grains: &GeneratedDiscs,
+    lining: &WallLining,
     fill_height: f64,
 ) -> Result<Particles, SceneError> {
     // The floor is as low as possible with its motion inside the box.
@@ -308,7 +308,7 @@ fn above_floor(
             "grains would be placed up to {}, but the box ends at {top}",
             readable(floor + fill_height)
         );
-        let error = stated.spot(&FILL_HEIGHT).error(Reason::Outside, message);
+        let error = stated.spot(&FILL_HEIGHT).error(MistakeKind::Outside, message);
         return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
     }
     let count = grain_count(stated, amount, domain.length(0) * fill_height, grains, JAMMING)?;

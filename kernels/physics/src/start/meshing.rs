@@ -1,20 +1,20 @@
 //! Discs at random sites of a mesh.
 
-use super::Stated;
+use super::StatedStart;
 use super::filling::{MOST, disc, placeable};
 use crate::domain::Domain;
 use crate::number::significant;
-use crate::particles::{Kind, Particle, Particles};
+use crate::particles::{Particle, ParticleKind, Particles};
 use crate::placement::{mesh, stir};
-use crate::scene::{Amount, COUNT, Grains, PACKING_FRACTION, Reason, SPACING, SceneError};
+use crate::scene::{Amount, COUNT, GeneratedDiscs, MistakeKind, PACKING_FRACTION, SPACING, SceneError};
 use std::f64::consts::PI;
 
 /// Places discs at random sites of a square mesh.
 pub(super) fn on_mesh(
-    stated: &Stated<'_>,
+    stated: &StatedStart<'_>,
     domain: &Domain,
     amount: Amount,
-    grains: &Grains,
+    grains: &GeneratedDiscs,
     spacing: f64,
 ) -> Result<Particles, SceneError> {
     let counts = [0, 1].map(|axis| (domain.length(axis) / spacing).floor().max(1.0));
@@ -25,7 +25,7 @@ pub(super) fn on_mesh(
             (fraction * domain.area() / (PI * grains.radius * grains.radius)).round()
         }
     };
-    let refuse = |message: String| stated.spot(key).error(Reason::Placement, message);
+    let refuse = |message: String| stated.spot(key).error(MistakeKind::Placement, message);
     if !(1.0..=MOST).contains(&count) {
         return Err(refuse(format!(
             "{count} discs are not between 1 and the {MOST} that can be numbered",
@@ -49,7 +49,7 @@ pub(super) fn on_mesh(
             counts[1],
             MOST = significant(MOST, 4)
         );
-        let error = stated.spot(&SPACING).error(Reason::Placement, message);
+        let error = stated.spot(&SPACING).error(MistakeKind::Placement, message);
         return Err(error.advising("set a larger particles.spacing"));
     }
     placeable(stated, count, key)?;
@@ -59,8 +59,10 @@ pub(super) fn on_mesh(
         [0, 1].map(|axis| domain.origin[axis] + ([column, row][axis] as f64 + 0.5) * edge[axis])
     };
     let of = [grains.radius, grains.mass];
-    let discs =
-        places.into_iter().zip(1..).map(|(place, id)| disc(id, Kind::Grain, at(place), grains.radius, of));
+    let discs = places
+        .into_iter()
+        .zip(1..)
+        .map(|(place, id)| disc(id, ParticleKind::Grain, at(place), grains.radius, of));
     let mut discs: Vec<Particle> = discs.collect();
     let balanced = domain.periodic() == [true; 2] && discs.len() > 1;
     stir(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));

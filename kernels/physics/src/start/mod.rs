@@ -10,33 +10,34 @@ mod noise;
 pub use checks::outside;
 pub(crate) use checks::{deepest_overlap, noun, overlaps, readable};
 pub(crate) use making::radii;
-pub use making::{Made, make};
+pub use making::{InitialState, make};
 pub(crate) use noise::noise_seed;
 
 use crate::particles::Particle;
-use crate::scene::{Domain, Key, Spot, Start, Values, WallMotion};
+use crate::scene::{DiscStart, Key, SceneDomain, SceneValues, Spot, WallMotion};
 
 /// Start of a scene as stated, with the locations of its keys.
 #[derive(Clone, Copy, Debug)]
-pub struct Stated<'s> {
+pub struct StatedStart<'s> {
     /// Values and their locations.
-    pub values: &'s Values,
+    pub values: &'s SceneValues,
     /// Box.
-    pub domain: &'s Domain,
+    pub domain: &'s SceneDomain,
     /// Initial discs.
-    pub start: &'s Start,
+    pub start: &'s DiscStart,
     /// Motion of wall discs.
     pub walls: WallMotion,
     /// Function that lets grains grow.
-    pub compress: Compress,
+    pub compress: CompressFunction,
 }
 
 /// Lets grains in a box grow from a scale of their radii (below 1) to the whole, with a seed; it moves them.
-pub(crate) type Compress = fn(&crate::domain::Domain, &mut [Particle], f64, u64) -> Result<(), Uncompressed>;
+pub(crate) type CompressFunction =
+    fn(&crate::domain::Domain, &mut [Particle], f64, u64) -> Result<(), CompressionFailure>;
 
 /// Reason why grains did not reach their radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Uncompressed {
+pub enum CompressionFailure {
     /// The discs jam.
     Jammed {
         /// Packing fraction reached.
@@ -46,7 +47,7 @@ pub enum Uncompressed {
     TooSmall,
 }
 
-impl Stated<'_> {
+impl StatedStart<'_> {
     fn spot(&self, key: &Key) -> Spot {
         self.values.spot(key)
     }

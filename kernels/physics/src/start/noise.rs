@@ -1,14 +1,14 @@
 //! Seeds of a run's random numbers.
 
 use crate::particles::{Particle, Particles};
-use crate::scene::Start;
+use crate::scene::DiscStart;
 use stripmine_kernels::noise::seed_of_state;
 
 /// Seed of the random numbers of bath and thermal walls.
 ///
 /// A generated start uses the scene's seed. A start that is listed or read from a file derives its seed from the scene's and from the state, so
 /// that a run continued from a frame does not repeat the noise of the previous run.
-pub(crate) fn noise_seed(start: &Start, seed: u64, particles: &Particles) -> u64 {
+pub(crate) fn noise_seed(start: &DiscStart, seed: u64, particles: &Particles) -> u64 {
     if start.seed().is_some() {
         return seed;
     }
@@ -30,7 +30,7 @@ mod tests {
     fn listed_starts_derive_their_own_seed() {
         let (prepared, _) = load("langevin-free", &["particles.count=5".to_owned()], METHODS).unwrap();
         let particles = prepared.particles().clone();
-        let (drawn, listed) = (Start::default(), Start::List(List::default()));
+        let (drawn, listed) = (DiscStart::default(), DiscStart::List(List::default()));
         assert_eq!(noise_seed(&drawn, 9, &particles), 9);
         let own = noise_seed(&listed, 9, &particles);
         let mut seeds = vec![9, own, noise_seed(&listed, 10, &particles)];

@@ -1,7 +1,7 @@
 //! Discs sorted by cells, in compact columns, with their images across periodic sides: everything within reach of a disc is stored in a few spans.
 
-use super::discs::Discs;
-use super::setting::Setting;
+use super::discs::SampledDiscs;
+use super::setting::StructureSetting;
 use std::ops::Range;
 
 /// Smallest number of discs in the rows of one task.
@@ -15,7 +15,7 @@ const MOST_PERIODS: f64 = 16.0;
 
 /// Discs sorted into rows of cells. Images across periodic sides are stored too, so that searches need no wrapping.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Cells {
+pub(super) struct SampleCells {
     /// Start of the first cell of the box, and cells per length, along each axis.
     origin: [f64; 2],
     by_length: [f64; 2],
@@ -36,9 +36,9 @@ pub(super) struct Cells {
     pub(super) parts: Vec<Range<usize>>,
 }
 
-impl Cells {
+impl SampleCells {
     /// Sorts the discs for searches within `reach` (length).
-    pub(super) fn sort(&mut self, setting: &Setting, discs: &Discs, reach: f64) {
+    pub(super) fn sort(&mut self, setting: &StructureSetting, discs: &SampledDiscs, reach: f64) {
         let domain = setting.domain;
         let sides = domain.lengths();
         // Cells contain about one disc.
@@ -60,7 +60,7 @@ impl Cells {
     }
 
     /// Sorts the discs of each cell of the box by their numbers.
-    fn sort_into_box(&mut self, discs: &Discs) {
+    fn sort_into_box(&mut self, discs: &SampledDiscs) {
         let [columns, rows] = self.count;
         let (origin, by_length) = (self.origin, self.by_length);
         let along = |axis: usize, at: f64| {
@@ -90,7 +90,7 @@ impl Cells {
     }
 
     /// Stores cells with their images, row by row.
-    fn lay_out(&mut self, discs: &Discs, sides: [f64; 2]) {
+    fn lay_out(&mut self, discs: &SampledDiscs, sides: [f64; 2]) {
         let image = |axis: usize, at: usize| {
             let (count, at) = (self.count[axis] as i64, at as i64 - self.margin[axis] as i64);
             (at.rem_euclid(count) as usize, at.div_euclid(count) as f64 * sides[axis])

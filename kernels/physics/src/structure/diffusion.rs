@@ -7,7 +7,7 @@
 
 use super::blocks::MOST as MOST_BLOCKS;
 use super::motion::{integral, slope};
-use super::{Verdict, Whole};
+use super::{AveragedFunction, FunctionReliability};
 use crate::number::significant;
 
 /// Required lags over τ: the missing part is then 0.1 and 0.2 %.
@@ -23,7 +23,7 @@ const RESOLVED: f64 = 0.7;
 const RATIOS: [f64; 2] = [0.05, 200.0];
 
 /// Estimate of the constant from a function of lags.
-struct Rising {
+struct DiffusionEstimate {
     /// Estimate from an octave of lags: lags, values and the indices of the octave's ends.
     of: fn(&[f64], &[f64], [usize; 2]) -> f64,
     /// Missing fraction at a lag over τ.
@@ -38,14 +38,14 @@ fn missing_of_slope(x: f64) -> f64 {
     2.0 / x * (libm::exp(-0.5 * x) - libm::exp(-x))
 }
 
-const SLOPE: Rising = Rising {
+const SLOPE: DiffusionEstimate = DiffusionEstimate {
     of: |lags, values, [from, to]| slope(lags, values, from, to) / 4.0,
     missing: missing_of_slope,
     ratio: |x| (1.0 - missing_of_slope(0.5 * x)) / (1.0 - missing_of_slope(x)),
     long_enough: LONG_ENOUGH[0],
 };
 
-const INTEGRAL: Rising = Rising {
+const INTEGRAL: DiffusionEstimate = DiffusionEstimate {
     of: |lags, values, [_, to]| 0.5 * integral(lags, values, to),
     missing: |x| libm::exp(-x),
     ratio: |x| 1.0 / (1.0 + libm::exp(-0.5 * x)),
@@ -61,14 +61,14 @@ fn octaves(lags: &[f64]) -> Vec<[usize; 3]> {
     ends.map(|lag| [at(0.25 * lag), at(0.5 * lag), at(lag)]).collect()
 }
 
-impl Rising {
+impl DiffusionEstimate {
     /// D from the longest octave, of a block or of means.
     fn constant(&self, lags: &[f64], values: &[f64]) -> f64 {
         octaves(lags).first().map_or(f64::NAN, |&[_, half, last]| (self.of)(lags, values, [half, last]))
     }
 
     /// Correlation time τ from the changes between octaves, the longest one; none if no change is significant.
-    fn memory(&self, whole: &Whole<'_>) -> Option<f64> {
+    fn memory(&self, whole: &AveragedFunction<'_>) -> Option<f64> {
         let of = |&[quarter, half, last]: &[usize; 3]| {
             let later = |block: &[f64]| (self.of)(whole.over, block, [half, last]);
             let change = |block: &[f64]| later(block) - (self.of)(whole.over, block, [quarter, half]);
@@ -90,21 +90,21 @@ impl Rising {
     }
 
     /// Missing part at the longest lag, relative to the estimate.
-    fn bias(&self, whole: &Whole<'_>) -> f64 {
+    fn bias(&self, whole: &AveragedFunction<'_>) -> f64 {
         let (Some(memory), Some(last)) = (self.memory(whole), whole.over.last()) else { return 0.0 };
         let missing = (self.missing)(last / memory);
         missing / (1.0 - missing)
     }
 
     /// Reason why there is no constant, with the run that would give one.
-    fn judge(&self, whole: &Whole<'_>) -> Verdict {
+    fn judge(&self, whole: &AveragedFunction<'_>) -> FunctionReliability {
         if whole.setting.domain.periodic() != [true; 2] {
             let why =
                 "no diffusion constant: closed sides bound the displacements; both sides must be periodic";
-            return Verdict::None(why.to_owned());
+            return FunctionReliability::None(why.to_owned());
         }
         let Some(&last) = whole.over.last().filter(|_| !octaves(whole.over).is_empty()) else {
-            return Verdict::None(format!(
+            return FunctionReliability::None(format!(
                 "no diffusion constant: the longest lag spans fewer than 4 rows; write at least {} rows",
                 4 * MOST_BLOCKS
             ));
@@ -114,7 +114,7 @@ impl Rising {
                 // The longest lag is at least the length of the run over the number of blocks.
                 let enough =
                     (MARGIN * MOST_BLOCKS as f64 * self.long_enough * memory).max(2.0 * whole.elapsed);
-                Verdict::None(format!(
+                FunctionReliability::None(format!(
                     "no diffusion constant: motion is not diffusive yet at the longest lag, {}: velocities are correlated for about {}; extend the run \
                      until about time {} to resolve it",
                     significant(last, 2),
@@ -122,40 +122,40 @@ impl Rising {
                     significant(enough, 2)
                 ))
             }
-            _ => Verdict::Sound,
+            _ => FunctionReliability::Sound,
         }
     }
 }
 
 /// D from the slope of the mean square displacement, between half of the longest lag and the longest lag.
-pub(super) fn by_displacements(whole: &Whole<'_>, block: &[f64]) -> f64 {
+pub(super) fn by_displacements(whole: &AveragedFunction<'_>, block: &[f64]) -> f64 {
     SLOPE.constant(whole.over, &block[..whole.over.len()])
 }
 
 /// Relative bias of the slope.
-pub(super) fn bias_of_displacements(whole: &Whole<'_>) -> f64 {
+pub(super) fn bias_of_displacements(whole: &AveragedFunction<'_>) -> f64 {
     SLOPE.bias(whole)
 }
 
 /// Judgement of the slope.
-pub(super) fn judge_displacements(whole: &Whole<'_>) -> Verdict {
+pub(super) fn judge_displacements(whole: &AveragedFunction<'_>) -> FunctionReliability {
     SLOPE.judge(whole)
 }
 
 /// D as half of the integral of ⟨v(0)·v(t)⟩ by the trapezoidal rule.
-pub(super) fn by_velocities(whole: &Whole<'_>, block: &[f64]) -> f64 {
+pub(super) fn by_velocities(whole: &AveragedFunction<'_>, block: &[f64]) -> f64 {
     INTEGRAL.constant(whole.over, &block[..whole.over.len()])
 }
 
 /// Relative bias of the integral.
-pub(super) fn bias_of_velocities(whole: &Whole<'_>) -> f64 {
+pub(super) fn bias_of_velocities(whole: &AveragedFunction<'_>) -> f64 {
     INTEGRAL.bias(whole)
 }
 
 /// Judgement of the integral; it also fails if velocities decorrelate between two rows.
-pub(super) fn judge_velocities(whole: &Whole<'_>) -> Verdict {
+pub(super) fn judge_velocities(whole: &AveragedFunction<'_>) -> FunctionReliability {
     match INTEGRAL.judge(whole) {
-        Verdict::Sound if whole.means[1][0] < RESOLVED * whole.means[0][0] => Verdict::None(
+        FunctionReliability::Sound if whole.means[1][0] < RESOLVED * whole.means[0][0] => FunctionReliability::None(
             "no diffusion constant: rows too far apart, velocities decorrelate between them; write rows so often that the autocorrelation falls by less \
              than a third"
                 .to_owned(),

@@ -2,7 +2,7 @@
 
 /// Discs present, in the order of the scene, in columns.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Discs {
+pub(super) struct SampledDiscs {
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     pub(super) vx: Vec<f64>,

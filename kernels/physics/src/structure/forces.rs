@@ -1,16 +1,16 @@
 //! Forces between discs at one moment: pair by pair, and as the stress on a grid.
 
-use super::cells::Cells;
-use super::discs::Discs;
-use super::setting::Setting;
-use crate::particles::{Kind, Particle};
+use super::cells::SampleCells;
+use super::discs::SampledDiscs;
+use super::setting::StructureSetting;
+use crate::particles::{Particle, ParticleKind};
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
 };
 use std::fmt::{self, Debug, Formatter};
 use std::ops::Range;
 use std::sync::Arc;
-use stripmine_kernels::sweep::pair::{Body, Pair};
+use stripmine_kernels::sweep::pair::{Pair, PairBody};
 
 /// Largest number of cells of the stress grid.
 const MOST_CELLS: f64 = 400.0;
@@ -36,32 +36,36 @@ impl Debug for PairForces {
 }
 
 /// Discs, walls included, with their pair forces.
-struct Acting<'a> {
+struct InteractingDiscs<'a> {
     particles: &'a [Particle],
     forces: &'a PairForces,
-    cells: &'a Cells,
+    cells: &'a SampleCells,
     halves: Vec<f64>,
 }
 
-impl<'a> Acting<'a> {
+impl<'a> InteractingDiscs<'a> {
     /// Sorts the discs into `cells`.
     fn new(
-        setting: &Setting,
+        setting: &StructureSetting,
         particles: &'a [Particle],
         forces: &'a PairForces,
-        cells: &'a mut Cells,
+        cells: &'a mut SampleCells,
     ) -> Self {
         let of = |place: fn(&Particle) -> f64| particles.iter().map(place).collect();
-        let discs = Discs { x: of(|it| it.position[0]), y: of(|it| it.position[1]), ..Discs::default() };
+        let discs = SampledDiscs {
+            x: of(|it| it.position[0]),
+            y: of(|it| it.position[1]),
+            ..SampledDiscs::default()
+        };
         cells.sort(setting, &discs, forces.reach);
         let halves = cells.halves(forces.reach).collect();
-        Acting { particles, forces, cells, halves }
+        InteractingDiscs { particles, forces, cells, halves }
     }
 
     /// Visits each pair with a mobile disc of some rows and those above: the numbers, the vector from the second to the first (length), and the
     /// force on the first.
     fn each(&self, rows: Range<usize>, mut each: impl FnMut([usize; 2], [f64; 2], [f64; 2])) {
-        let Acting { particles, forces, cells, halves } = self;
+        let InteractingDiscs { particles, forces, cells, halves } = self;
         for row in rows {
             for own in cells.own(row) {
                 for (&half, up) in halves.iter().zip(0..) {
@@ -72,9 +76,9 @@ impl<'a> Acting<'a> {
                         let numbers = [own, other].map(|at| cells.number[at] as usize);
                         let discs = numbers.map(|number| &particles[number]);
                         let is_near = way[0] * way[0] + way[1] * way[1] < forces.reach * forces.reach;
-                        if is_near && discs.iter().any(|disc| disc.kind == Kind::Grain) {
+                        if is_near && discs.iter().any(|disc| disc.kind == ParticleKind::Grain) {
                             let [one, two] = discs.map(body);
-                            let pair = Pair { bodies: [Body { position: way, ..one }, two] };
+                            let pair = Pair { bodies: [PairBody { position: way, ..one }, two] };
                             each(numbers, way, (forces.of)(&pair));
                         }
                     }
@@ -85,21 +89,21 @@ impl<'a> Acting<'a> {
 }
 
 /// Disc as a law reads it, at the origin.
-fn body(disc: &Particle) -> Body {
-    Body {
+fn body(disc: &Particle) -> PairBody {
+    PairBody {
         position: [0.0; 2],
         velocity: disc.planar_velocity(),
         omega: disc.omega,
         radius: disc.radius,
-        inverse_mass: if disc.kind == Kind::Grain { 1.0 / disc.mass } else { 0.0 },
+        inverse_mass: if disc.kind == ParticleKind::Grain { 1.0 / disc.mass } else { 0.0 },
     }
 }
 
 /// Sum of the magnitudes of the forces on each disc (force), walls included, in their order.
-pub fn forces_on_each(setting: &Setting, particles: &[Particle], forces: &PairForces) -> Vec<f64> {
+pub fn forces_on_each(setting: &StructureSetting, particles: &[Particle], forces: &PairForces) -> Vec<f64> {
     let mut sums = vec![0.0; particles.len()];
-    let mut cells = Cells::default();
-    let acting = Acting::new(setting, particles, forces, &mut cells);
+    let mut cells = SampleCells::default();
+    let acting = InteractingDiscs::new(setting, particles, forces, &mut cells);
     for rows in &acting.cells.parts {
         acting.each(rows.clone(), |numbers, _, [x, y]| {
             numbers.into_iter().for_each(|at| sums[at] += x.hypot(y))
@@ -109,10 +113,10 @@ pub fn forces_on_each(setting: &Setting, particles: &[Particle], forces: &PairFo
 }
 
 /// Net pair force on each disc (force), in their order. Walls are included, pairs of walls are not. A `forces.reach` of 0 gives none.
-pub fn net_forces(setting: &Setting, particles: &[Particle], forces: &PairForces) -> Vec<[f64; 2]> {
+pub fn net_forces(setting: &StructureSetting, particles: &[Particle], forces: &PairForces) -> Vec<[f64; 2]> {
     let mut sums = vec![[0.0; 2]; particles.len()];
-    let mut cells = Cells::default();
-    let acting = Acting::new(setting, particles, forces, &mut cells);
+    let mut cells = SampleCells::default();
+    let acting = InteractingDiscs::new(setting, particles, forces, &mut cells);
     for rows in &acting.cells.parts {
         acting.each(rows.clone(), |[first, second], _, force| {
             for (axis, force) in force.into_iter().enumerate() {
@@ -125,14 +129,14 @@ pub fn net_forces(setting: &Setting, particles: &[Particle], forces: &PairForces
 }
 
 /// Number of cells of the grid along each axis: nearly square, each wider than a disc.
-fn counts(setting: &Setting) -> [usize; 2] {
+fn counts(setting: &StructureSetting) -> [usize; 2] {
     let [x, y] = setting.domain.lengths();
     let edge = (x * y / MOST_CELLS).sqrt().max(setting.diameter);
     [x, y].map(|side| (side / edge).floor().clamp(1.0, MOST_CELLS) as usize)
 }
 
 /// Centres of the cells of the grid (length), row by row.
-pub(super) fn grid(setting: &Setting) -> Vec<[f64; 2]> {
+pub(super) fn grid(setting: &StructureSetting) -> Vec<[f64; 2]> {
     let [columns, rows] = counts(setting);
     let middle = |axis: usize, at: usize, count: usize| {
         setting.domain.origin[axis] + (at as f64 + 0.5) * setting.domain.length(axis) / count as f64
@@ -149,12 +153,12 @@ pub(super) struct Stress {
     sums: Vec<f64>,
     /// Components of each task (energy).
     parts: Vec<Vec<f64>>,
-    cells: Cells,
+    cells: SampleCells,
 }
 
 impl Stress {
     /// Sums the motion of the grains, and half of each pair in the cell of either disc. Tasks are added in their order.
-    pub(super) fn sum(&mut self, setting: &Setting, particles: &[Particle], forces: &PairForces) {
+    pub(super) fn sum(&mut self, setting: &StructureSetting, particles: &[Particle], forces: &PairForces) {
         let [columns, rows] = counts(setting);
         let domain = setting.domain;
         let cell = |disc: &Particle| {
@@ -165,7 +169,7 @@ impl Stress {
             COMPONENTS * (along(1, rows) * columns + along(0, columns))
         };
         let width = COMPONENTS * rows * columns;
-        let acting = Acting::new(setting, particles, forces, &mut self.cells);
+        let acting = InteractingDiscs::new(setting, particles, forces, &mut self.cells);
         self.parts.resize(acting.cells.parts.len(), vec![]);
         self.parts.par_iter_mut().zip(acting.cells.parts.par_iter()).for_each(|(sums, rows)| {
             sums.clear();
@@ -179,7 +183,7 @@ impl Stress {
         });
         self.sums.clear();
         self.sums.resize(width, 0.0);
-        for disc in particles.iter().filter(|disc| disc.kind == Kind::Grain) {
+        for disc in particles.iter().filter(|disc| disc.kind == ParticleKind::Grain) {
             let [x, y] = disc.planar_velocity();
             add(&mut self.sums[cell(disc)..], [x * x, x * y, y * y].map(|square| disc.mass * square));
         }

@@ -4,11 +4,11 @@
 //! floor, so that density profiles due to gravity are not counted as correlations. Differences of heights are distributed to the nearest tabulated
 //! heights. These are much closer than bins, and each has a table of probabilities for the bins of distances.
 
-use super::discs::Discs;
-use super::ideal::{Size, sizes};
+use super::discs::SampledDiscs;
+use super::ideal::{DiscSize, sizes};
 use super::pairs::{BINS, bins};
-use super::setting::Setting;
-use crate::domain::Side;
+use super::setting::StructureSetting;
+use crate::domain::BoxSide;
 use crate::particles::Particles;
 
 /// Number of tabulated heights in a bin of distances.
@@ -18,7 +18,7 @@ const STEPS: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
     /// Sizes that differ in their distance from the sides of the box.
-    sizes: Vec<Size>,
+    sizes: Vec<DiscSize>,
     bins: usize,
     /// Tabulated heights per length.
     by_length: f64,
@@ -34,7 +34,7 @@ pub(super) struct Heights {
 
 impl Heights {
     /// Tables for the discs of a scene in a box with an open top.
-    pub(super) fn new(setting: &Setting, particles: &Particles) -> Heights {
+    pub(super) fn new(setting: &StructureSetting, particles: &Particles) -> Heights {
         let mut sizes = sizes(particles.grains());
         if setting.domain.is_periodic(0) {
             sizes.truncate(1);
@@ -63,7 +63,7 @@ impl Heights {
     }
 
     /// Computes the pairs of the ideal gas of some discs.
-    pub(super) fn find(&mut self, discs: &Discs) {
+    pub(super) fn find(&mut self, discs: &SampledDiscs) {
         let Heights { sizes, bins, by_length, chances, ascending, counts, pairs } = self;
         let size_of = |radius: f64| {
             let off = |size: &usize| (sizes[*size].radius - radius).abs();
@@ -97,9 +97,9 @@ impl Heights {
 }
 
 /// Probability that discs of two radii, each anywhere along a side, are closer along it than some length.
-fn chance_along(side: Side, radii: [f64; 2], way: f64) -> f64 {
+fn chance_along(side: BoxSide, radii: [f64; 2], way: f64) -> f64 {
     let room = match side {
-        Side::Closed(length) => radii.map(|radius| (length - 2.0 * radius).max(0.0)),
+        BoxSide::Closed(length) => radii.map(|radius| (length - 2.0 * radius).max(0.0)),
         _ => return (2.0 * way / side.length()).min(1.0),
     };
     let [narrow, wide] = [room[0].min(room[1]), room[0].max(room[1])];
@@ -115,7 +115,7 @@ fn chance_along(side: Side, radii: [f64; 2], way: f64) -> f64 {
 }
 
 /// Cost for each disc (ns): its pairs, and its part of the tables.
-pub(super) fn nanoseconds(setting: &Setting, discs: usize) -> f64 {
+pub(super) fn nanoseconds(setting: &StructureSetting, discs: usize) -> f64 {
     const PAIR: f64 = 1.5;
     const CHANCE: f64 = 0.3;
     let [bins, discs] = [bins(setting), discs].map(|count| count as f64);
@@ -131,14 +131,14 @@ mod tests {
     #[test]
     fn probabilities_match_two_uniform_positions() {
         for (side, radii, way, chance) in [
-            (Side::Periodic(10.0), [0.5, 1.0], 2.0, 0.4),
+            (BoxSide::Periodic(10.0), [0.5, 1.0], 2.0, 0.4),
             // Ranges of 9 and 9: 1 − (1 − 3/9)².
-            (Side::Closed(10.0), [0.5; 2], 3.0, 5.0 / 9.0),
+            (BoxSide::Closed(10.0), [0.5; 2], 3.0, 5.0 / 9.0),
             // Ranges of 4 and 8: from the centre, 2 in each direction are within the wide range.
-            (Side::Closed(10.0), [3.0, 1.0], 1.0, 0.25),
-            (Side::Closed(10.0), [1.0, 3.0], 4.0, (16.0 + 2.0 * 6.0 * 2.0 - 16.0 + 4.0) / 32.0),
-            (Side::Closed(10.0), [3.0, 1.0], 6.0, 1.0),
-            (Side::Closed(2.0), [1.0; 2], 0.0, 1.0),
+            (BoxSide::Closed(10.0), [3.0, 1.0], 1.0, 0.25),
+            (BoxSide::Closed(10.0), [1.0, 3.0], 4.0, (16.0 + 2.0 * 6.0 * 2.0 - 16.0 + 4.0) / 32.0),
+            (BoxSide::Closed(10.0), [3.0, 1.0], 6.0, 1.0),
+            (BoxSide::Closed(2.0), [1.0; 2], 0.0, 1.0),
         ] {
             let found = chance_along(side, radii, way);
             assert!((found - chance).abs() < 1e-12, "{side:?} {radii:?} {way}: {found} in place of {chance}");

@@ -5,9 +5,9 @@
 //! With wall discs it is sampled on a grid, on the part connected to the initial discs.
 
 use super::pairs::{BINS, bins};
-use super::setting::Setting;
+use super::setting::StructureSetting;
 use crate::domain::Domain;
-use crate::particles::{Kind, Particle, Particles};
+use crate::particles::{Particle, ParticleKind, Particles};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::f64::consts::{PI, TAU};
 
@@ -26,7 +26,7 @@ const EVEN: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 /// Discs of about one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Size {
+pub(super) struct DiscSize {
     /// Mean radius (length).
     pub(super) radius: f64,
     /// Number of discs.
@@ -34,12 +34,13 @@ pub(super) struct Size {
 }
 
 /// Probability of a pair of discs in each bin of distances. Walls and the connected area are those of the start.
-pub(super) fn chances(setting: &Setting, particles: &Particles) -> Vec<f64> {
+pub(super) fn chances(setting: &StructureSetting, particles: &Particles) -> Vec<f64> {
     let domain = &setting.domain;
     let has_walls = particles.grain_count() < particles.len();
     let sizes = sizes(particles.grains());
     if has_walls {
-        let grids: Vec<Grid> = sizes.iter().map(|size| Grid::new(domain, size.radius, particles)).collect();
+        let grids: Vec<ReachableGrid> =
+            sizes.iter().map(|size| ReachableGrid::new(domain, size.radius, particles)).collect();
         return of_sizes(setting, &sizes, |a, b, r| grids[a].share(&grids[b], r) / grids[b].area());
     }
     if sizes.len() > 1 && domain.periodic() != [true; 2] {
@@ -61,8 +62,8 @@ pub(super) fn chances(setting: &Setting, particles: &Particles) -> Vec<f64> {
 
 /// Averages the probability over pairs of sizes; `by_area` is the probability per unit of area at a distance.
 fn of_sizes(
-    setting: &Setting,
-    sizes: &[Size],
+    setting: &StructureSetting,
+    sizes: &[DiscSize],
     by_area: impl Fn(usize, usize, f64) -> f64 + Sync,
 ) -> Vec<f64> {
     let width = setting.diameter / BINS;
@@ -85,19 +86,19 @@ fn of_sizes(
 }
 
 /// Groups discs by radius: each radius alone if there are few, else ranges of radii with about as many discs each.
-pub(super) fn sizes(grains: &[Particle]) -> Vec<Size> {
+pub(super) fn sizes(grains: &[Particle]) -> Vec<DiscSize> {
     let mut radii: Vec<f64> = grains.iter().map(|grain| grain.radius).collect();
     radii.sort_by(f64::total_cmp);
-    let mut sizes: Vec<Size> = vec![];
+    let mut sizes: Vec<DiscSize> = vec![];
     for alike in radii.chunk_by(|a, b| a == b).take(SIZES + 1) {
-        sizes.push(Size { radius: alike[0], count: alike.len() as f64 });
+        sizes.push(DiscSize { radius: alike[0], count: alike.len() as f64 });
     }
     if sizes.len() <= SIZES {
         return sizes;
     }
     let of = |radii: &[f64]| {
         let count = radii.len() as f64;
-        Size { radius: radii.iter().sum::<f64>() / count, count }
+        DiscSize { radius: radii.iter().sum::<f64>() / count, count }
     };
     radii.chunks(radii.len().div_ceil(SIZES)).map(of).collect()
 }
@@ -125,7 +126,7 @@ fn shared_area(domain: &Domain, radii: [f64; 2], r: f64) -> f64 {
 }
 
 /// Grid over the rectangle between closed sides, with the cells that the centre of a disc can reach from the initial discs.
-struct Grid {
+struct ReachableGrid {
     domain: Domain,
     /// Lower left corner of the rectangle (length); no closed side cuts a cell.
     origin: [f64; 2],
@@ -137,9 +138,9 @@ struct Grid {
     reached: Vec<u32>,
 }
 
-impl Grid {
+impl ReachableGrid {
     /// Grid for discs of a radius (length).
-    fn new(domain: &Domain, radius: f64, particles: &Particles) -> Grid {
+    fn new(domain: &Domain, radius: f64, particles: &Particles) -> ReachableGrid {
         let edge = (EDGE * radius).max((domain.area() / MOST_CELLS).sqrt());
         let rim = [0, 1].map(|axis| if domain.is_periodic(axis) { 0.0 } else { radius });
         let origin = [0, 1].map(|axis| domain.origin[axis] + rim[axis]);
@@ -147,7 +148,8 @@ impl Grid {
         let lengths = [0, 1].map(|axis| (domain.length(axis) - 2.0 * rim[axis]).max(edge));
         let counts = lengths.map(|length| (length / edge).ceil().max(1.0) as usize);
         let edges = [0, 1].map(|axis| lengths[axis] / counts[axis] as f64);
-        let mut grid = Grid { domain: *domain, origin, counts, edges, is_reached: vec![], reached: vec![] };
+        let mut grid =
+            ReachableGrid { domain: *domain, origin, counts, edges, is_reached: vec![], reached: vec![] };
         let is_free = grid.free_of_walls(radius, particles);
         grid.flood(&is_free, particles.grains());
         grid
@@ -157,7 +159,7 @@ impl Grid {
     fn free_of_walls(&self, radius: f64, particles: &Particles) -> Vec<bool> {
         let [columns, rows] = self.counts;
         let mut is_free = vec![true; columns * rows];
-        for wall in particles.all().iter().filter(|disc| disc.kind == Kind::Wall) {
+        for wall in particles.all().iter().filter(|disc| disc.kind == ParticleKind::Wall) {
             let reach = wall.radius + radius;
             let from = [0, 1].map(|axis| wall.position[axis] - self.origin[axis]);
             let [low, high] = [-reach, reach]
@@ -225,7 +227,7 @@ impl Grid {
     }
 
     /// Fraction of reached positions from which a step of a length leads to one that is reached on another grid, over all directions.
-    fn share(&self, other: &Grid, r: f64) -> f64 {
+    fn share(&self, other: &ReachableGrid, r: f64) -> f64 {
         let reached = self.reached.len() as f64;
         let leads = |sample: usize| {
             let [place, turn] = EVEN.map(|step| (step * sample as f64).fract());
@@ -249,7 +251,7 @@ impl Grid {
 mod tests {
     use super::*;
 
-    fn disc(id: u32, kind: Kind, position: [f64; 2], radius: f64) -> Particle {
+    fn disc(id: u32, kind: ParticleKind, position: [f64; 2], radius: f64) -> Particle {
         let position = [position[0], position[1], 0.0];
         Particle { id, kind, position, velocity: [0.0; 3], angle: 0.0, omega: 0.0, radius, mass: 1.0 }
     }
@@ -257,14 +259,14 @@ mod tests {
     /// The integral over angles and the samples on a grid agree with the formula of the rectangle.
     #[test]
     fn three_ring_fraction_methods_agree() {
-        let discs = Particles::new((0..3).map(|id| disc(id, Kind::Grain, [3.0, 4.0], 0.5)).collect());
+        let discs = Particles::new((0..3).map(|id| disc(id, ParticleKind::Grain, [3.0, 4.0], 0.5)).collect());
         for (sides, periodic) in [([12.0, 9.0], [true, false]), ([12.0, 9.0], [false, false])] {
             let domain = Domain::planar([0.0; 2], sides, periodic);
-            let setting = Setting::new(domain, &discs);
+            let setting = StructureSetting::new(domain, &discs);
             let formula = chances(&setting, &discs);
-            let size = [Size { radius: 0.5, count: 3.0 }];
+            let size = [DiscSize { radius: 0.5, count: 3.0 }];
             let integral = of_sizes(&setting, &size, |_, _, r| shared_area(&domain, [0.5; 2], r));
-            let grid = Grid::new(&domain, 0.5, &discs);
+            let grid = ReachableGrid::new(&domain, 0.5, &discs);
             let sampled = of_sizes(&setting, &size, |_, _, r| grid.share(&grid, r) / grid.area());
             assert!(formula.len() > 100);
             for ((formula, integral), sampled) in formula.into_iter().zip(integral).zip(sampled) {
@@ -277,15 +279,15 @@ mod tests {
     /// A channel between rows of nearly touching wall discs is a strip with slightly uneven edges, and nothing outside of it is reached.
     #[test]
     fn channel_area_matches_its_walls() {
-        let mut all = vec![disc(0, Kind::Grain, [10.0, 6.0], 0.5)];
+        let mut all = vec![disc(0, ParticleKind::Grain, [10.0, 6.0], 0.5)];
         for column in 0..200 {
             for height in [3.0, 9.0] {
-                all.push(disc(all.len() as u32, Kind::Wall, [0.1 * f64::from(column), height], 0.5));
+                all.push(disc(all.len() as u32, ParticleKind::Wall, [0.1 * f64::from(column), height], 0.5));
             }
         }
         let particles = Particles::new(all);
         let domain = Domain::planar([0.0; 2], [20.0, 12.0], [true, false]);
-        let grid = Grid::new(&domain, 0.5, &particles);
+        let grid = ReachableGrid::new(&domain, 0.5, &particles);
         // Centres come within 1 of the centres of the walls.
         assert!((grid.area() / (20.0 * 4.0) - 1.0).abs() < 0.01, "{}", grid.area());
         for r in [0.5, 2.0, 3.5] {

@@ -1,26 +1,26 @@
 //! Samples of the discs. Data that several observables need are computed once, in memory that is reused for each sample.
 
-use super::cells::Cells;
-use super::discs::Discs;
+use super::cells::SampleCells;
+use super::discs::SampledDiscs;
 use super::forces::{PairForces, Stress};
 use super::heights::Heights;
 use super::ideal::chances;
 use super::neighbours::Neighbours;
 use super::pairs::Distances;
-use super::setting::Setting;
+use super::setting::StructureSetting;
 use super::waves::Waves;
-use super::{Asks, Observable, Seen};
-use crate::particles::{Particles, States};
+use super::{SampleData, SamplingKind, StructureObservable};
+use crate::particles::{GrainStates, Particles};
 
 /// Sample of discs at one moment.
 #[derive(Clone, Debug)]
-pub struct Look {
-    pub(super) setting: Setting,
+pub struct StructureSample {
+    pub(super) setting: StructureSetting,
     /// Radius and mass of each grain.
     sizes: Vec<[f64; 2]>,
-    states: States,
-    pub(super) discs: Discs,
-    cells: Cells,
+    states: GrainStates,
+    pub(super) discs: SampledDiscs,
+    cells: SampleCells,
     pub(super) distances: Distances,
     /// Probability of a pair of an ideal gas in each bin of distances, if pairs are needed.
     pub(super) chances: Vec<f64>,
@@ -29,29 +29,29 @@ pub struct Look {
     pub(super) neighbours: Neighbours,
     pub(super) waves: Waves,
     pub(super) stress: Stress,
-    asked: Vec<Asks>,
+    asked: Vec<SampleData>,
 }
 
-impl Look {
+impl StructureSample {
     /// Prepares samples for some observables of a scene's particles.
     pub fn new<'o>(
-        setting: Setting,
+        setting: StructureSetting,
         particles: &Particles,
-        observables: impl Iterator<Item = &'o Observable>,
-    ) -> Look {
-        let asks = |observable: &Observable| match observable.seen {
-            Seen::Once { asks, .. } => Some(asks),
-            Seen::Twice { .. } => None,
+        observables: impl Iterator<Item = &'o StructureObservable>,
+    ) -> StructureSample {
+        let asks = |observable: &StructureObservable| match observable.seen {
+            SamplingKind::Once { asks, .. } => Some(asks),
+            SamplingKind::Twice { .. } => None,
         };
-        let (grains, asked) = (particles.grains(), observables.filter_map(asks).collect::<Vec<Asks>>());
+        let (grains, asked) = (particles.grains(), observables.filter_map(asks).collect::<Vec<SampleData>>());
         let [by_heights, by_area] =
-            [true, false].map(|open| asked.contains(&Asks::Distances) && setting.has_open_top == open);
-        Look {
+            [true, false].map(|open| asked.contains(&SampleData::Distances) && setting.has_open_top == open);
+        StructureSample {
             setting,
             sizes: grains.iter().map(|grain| [grain.radius, grain.mass]).collect(),
-            states: States::of(grains),
-            discs: Discs::default(),
-            cells: Cells::default(),
+            states: GrainStates::of(grains),
+            discs: SampledDiscs::default(),
+            cells: SampleCells::default(),
             distances: Distances::default(),
             neighbours: Neighbours::default(),
             waves: Waves::new(&setting),
@@ -63,15 +63,15 @@ impl Look {
     }
 
     /// Samples the states that `put` stores; false if no disc is left.
-    pub fn at(&mut self, put: impl FnOnce(&mut States)) -> bool {
+    pub fn at(&mut self, put: impl FnOnce(&mut GrainStates)) -> bool {
         put(&mut self.states);
         self.take_up();
         if self.discs.x.is_empty() {
             return false;
         }
-        let asks = |what: Asks| self.asks(what);
+        let asks = |what: SampleData| self.asks(what);
         let (distances, neighbours, waves) =
-            (asks(Asks::Distances), asks(Asks::Neighbours), asks(Asks::Waves));
+            (asks(SampleData::Distances), asks(SampleData::Neighbours), asks(SampleData::Waves));
         if distances || neighbours {
             let reaches = [
                 if distances { self.setting.reach } else { 0.0 },
@@ -95,7 +95,7 @@ impl Look {
     }
 
     /// True if an observable needs these data.
-    pub fn asks(&self, what: Asks) -> bool {
+    pub fn asks(&self, what: SampleData) -> bool {
         self.asked.contains(&what)
     }
 
@@ -105,8 +105,8 @@ impl Look {
     }
 
     /// Values of an observable of one moment, and their weights in a mean.
-    pub fn values(&self, observable: &Observable) -> [Vec<f64>; 2] {
-        let Seen::Once { over, of, further, .. } = observable.seen else { return [vec![], vec![]] };
+    pub fn values(&self, observable: &StructureObservable) -> [Vec<f64>; 2] {
+        let SamplingKind::Once { over, of, further, .. } = observable.seen else { return [vec![], vec![]] };
         let width = over.places(&self.setting).len() + further;
         let (mut values, mut weights) = (vec![0.0; width], vec![1.0; width]);
         of(self, &mut values, &mut weights);
@@ -115,7 +115,7 @@ impl Look {
 
     /// Copies the states of the discs present into columns.
     fn take_up(&mut self) {
-        let Discs { x, y, vx, vy, radius, mass } = &mut self.discs;
+        let SampledDiscs { x, y, vx, vy, radius, mass } = &mut self.discs;
         [&mut *x, y, vx, vy, radius, mass].into_iter().for_each(|column| column.clear());
         let there = self.states.rows().iter().zip(&self.sizes).filter(|(row, _)| !row[0].is_nan());
         for (&[at_x, at_y, along_x, along_y], &[its_radius, its_mass]) in there {
@@ -130,8 +130,8 @@ impl Look {
 }
 
 /// Hexatic order ψ6 of each disc, real and imaginary part: the mean of exp(6iθ) over the six nearest.
-pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
-    let mut look = Look::new(*setting, discs, std::iter::empty());
+pub fn hexatic_orders(setting: &StructureSetting, discs: &Particles) -> Vec<[f64; 2]> {
+    let mut look = StructureSample::new(*setting, discs, std::iter::empty());
     look.states.take_up(discs);
     look.take_up();
     if look.discs.x.is_empty() {
@@ -145,7 +145,11 @@ pub fn hexatic_orders(setting: &Setting, discs: &Particles) -> Vec<[f64; 2]> {
 }
 
 /// Values of an observable for some discs, and their weights in a mean.
-pub fn seen(observable: &'static Observable, setting: Setting, discs: &Particles) -> [Vec<f64>; 2] {
-    let mut look = Look::new(setting, discs, std::iter::once(observable));
+pub fn seen(
+    observable: &'static StructureObservable,
+    setting: StructureSetting,
+    discs: &Particles,
+) -> [Vec<f64>; 2] {
+    let mut look = StructureSample::new(setting, discs, std::iter::once(observable));
     if look.at(|states| states.take_up(discs)) { look.values(observable) } else { [vec![], vec![]] }
 }

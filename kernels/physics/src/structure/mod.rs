@@ -23,16 +23,16 @@ mod work;
 pub(crate) use blocks::{Block, Blocks};
 pub use forces::{PairForces, forces_on_each, net_forces};
 pub use list::OBSERVABLES;
-pub use look::{Look, hexatic_orders, seen};
-pub use motion::{Motion, widening};
+pub use look::{StructureSample, hexatic_orders, seen};
+pub use motion::{MotionHistory, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
-pub use setting::Setting;
+pub use setting::StructureSetting;
 pub(crate) use work::bytes;
 pub use work::strides;
 
 /// Function of a distance, a time or the like that a run can average.
 #[derive(Debug)]
-pub struct Observable {
+pub struct StructureObservable {
     /// Name in scenes.
     pub name: &'static str,
     /// File in the run's folder.
@@ -46,17 +46,17 @@ pub struct Observable {
     /// Source of the definition.
     pub source: &'static str,
     /// Sampling of the function.
-    pub seen: Seen,
+    pub seen: SamplingKind,
     /// Numbers that summarise it.
     pub headlines: &'static [Headline],
     /// Decides whether the function and its headlines are reliable.
-    pub judged: fn(&Whole<'_>) -> Verdict,
+    pub judged: fn(&AveragedFunction<'_>) -> FunctionReliability,
 }
 
-impl Observable {
+impl StructureObservable {
     /// True if it needs discs followed across periodic sides.
     pub(crate) fn follows_motion(&self) -> bool {
-        matches!(self.seen, Seen::Twice { follows: true, .. })
+        matches!(self.seen, SamplingKind::Twice { follows: true, .. })
     }
 
     /// True if it counts discs by position: a value of 0 then means that none was sampled, not that the density is 0.
@@ -67,18 +67,18 @@ impl Observable {
 
 /// Sampling of an observable.
 #[derive(Clone, Copy, Debug)]
-pub enum Seen {
+pub enum SamplingKind {
     /// At single moments: the snapshots.
     Once {
         /// Arguments: centres of bins.
-        over: Over,
+        over: FunctionArguments,
         /// Computes its values, then further ones for headlines only, and their weights in a mean, which are 1 by default. A value is NaN or has no
         /// weight if a sample does not define it.
-        of: fn(&Look, &mut [f64], &mut [f64]),
+        of: fn(&StructureSample, &mut [f64], &mut [f64]),
         /// Number of further values.
         further: usize,
         /// Data that it needs.
-        asks: Asks,
+        asks: SampleData,
     },
     /// At pairs of moments: the rows.
     Twice {
@@ -91,7 +91,7 @@ pub enum Seen {
 
 /// Data that a sample provides to several observables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asks {
+pub enum SampleData {
     /// Discs only.
     Discs,
     /// Pairs by their distance.
@@ -106,22 +106,28 @@ pub enum Asks {
 
 /// Arguments of a function: centres of bins, or wave vectors.
 #[derive(Clone, Copy, Debug)]
-pub enum Over {
+pub enum FunctionArguments {
     /// Along an axis.
-    Axis(fn(&Setting) -> Vec<f64>),
+    Axis(fn(&StructureSetting) -> Vec<f64>),
     /// Cells of a grid over the box, row by row.
     Grid,
     /// Wave vectors, each along one of the periodic axes.
     Waves,
 }
 
-impl Over {
+impl FunctionArguments {
     /// One or two coordinates of each.
-    pub fn places(&self, setting: &Setting) -> Vec<Vec<f64>> {
+    pub fn places(&self, setting: &StructureSetting) -> Vec<Vec<f64>> {
         match self {
-            Over::Axis(middles) => middles(setting).into_iter().map(|middle| vec![middle]).collect(),
-            Over::Grid => forces::grid(setting).into_iter().map(|middle| middle.to_vec()).collect(),
-            Over::Waves => waves::vectors(setting).into_iter().map(|vector| vector.to_vec()).collect(),
+            FunctionArguments::Axis(middles) => {
+                middles(setting).into_iter().map(|middle| vec![middle]).collect()
+            }
+            FunctionArguments::Grid => {
+                forces::grid(setting).into_iter().map(|middle| middle.to_vec()).collect()
+            }
+            FunctionArguments::Waves => {
+                waves::vectors(setting).into_iter().map(|vector| vector.to_vec()).collect()
+            }
         }
     }
 }
@@ -134,9 +140,9 @@ pub struct Headline {
     /// Unit; empty for pure numbers.
     pub unit: &'static str,
     /// Value for a block of the function.
-    pub of: fn(&Whole<'_>, &[f64]) -> f64,
+    pub of: fn(&AveragedFunction<'_>, &[f64]) -> f64,
     /// Relative bias of the mean beyond its statistical error.
-    pub bias: fn(&Whole<'_>) -> f64,
+    pub bias: fn(&AveragedFunction<'_>) -> f64,
 }
 
 /// Mean over blocks of a number computed from each, with its error bar. The second argument is the index of the largest lag that the number uses.
@@ -144,9 +150,9 @@ pub struct Headline {
 pub(crate) type Estimator<'e> = dyn Fn(&dyn Fn(&[f64]) -> f64, usize) -> Option<[f64; 2]> + 'e;
 
 /// Averaged function with at least one value.
-pub struct Whole<'w> {
+pub struct AveragedFunction<'w> {
     /// Box and initial discs.
-    pub setting: &'w Setting,
+    pub setting: &'w StructureSetting,
     /// Arguments; of wave vectors and positions their length.
     pub over: &'w [f64],
     /// Means with their error bars.
@@ -159,7 +165,7 @@ pub struct Whole<'w> {
 
 /// Reliability of a function and its headlines.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
+pub enum FunctionReliability {
     /// Reliable.
     Sound,
     /// Usable with this reservation.
@@ -180,6 +186,6 @@ pub static NAMES: [&str; OBSERVABLES.len()] = {
 };
 
 /// Observable with a name.
-pub fn observable(name: &str) -> Option<&'static Observable> {
+pub fn observable(name: &str) -> Option<&'static StructureObservable> {
     OBSERVABLES.iter().find(|observable| observable.name == name)
 }

@@ -3,7 +3,7 @@
 //! Lags are 0 to 7 samples, then 4 to 7 times each power of two. A sample is stored only as long as a lag needs it, so memory grows with the
 //! logarithm of a run's length (the order-n algorithm of Frenkel and Smit, section 4.4.2, without coarse-graining).
 
-use stripmine_kernels::backend::{Registers, Task, dispatch_best};
+use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_best};
 
 /// Number of lags of one power of two; the upper half is new.
 const LAGS: u64 = 8;
@@ -47,7 +47,7 @@ pub fn widening(lag: u64, length: u64, blocks: usize) -> f64 {
 
 /// Stored samples of discs: unwrapped positions and velocities; NaN where a disc is lost.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct MotionHistory {
     /// Number of discs.
     discs: usize,
     /// Number of samples so far.
@@ -60,15 +60,20 @@ pub struct Motion {
     spare: Vec<Vec<[f64; 4]>>,
 }
 
-impl Motion {
+impl MotionHistory {
     /// Motion of a number of discs, without samples.
-    pub fn new(discs: usize) -> Motion {
-        Motion { discs, looks: 0, times: [0.0; 2], kept: vec![], spare: vec![] }
+    pub fn new(discs: usize) -> MotionHistory {
+        MotionHistory { discs, looks: 0, times: [0.0; 2], kept: vec![], spare: vec![] }
     }
 
     /// Restores what [`Motion::ends`] and [`Motion::column`] returned; none if it does not fit the discs.
-    pub(crate) fn restored(discs: usize, looks: u64, times: [f64; 2], column: &[f64]) -> Option<Motion> {
-        let mut motion = Motion::new(discs);
+    pub(crate) fn restored(
+        discs: usize,
+        looks: u64,
+        times: [f64; 2],
+        column: &[f64],
+    ) -> Option<MotionHistory> {
+        let mut motion = MotionHistory::new(discs);
         let length = 1 + 4 * discs;
         let of = |row: &[f64]| {
             let (states, _) = row[1..].as_chunks::<4>();
@@ -114,7 +119,7 @@ impl Motion {
     /// All lags (time).
     pub fn times(&self) -> Vec<f64> {
         let between = (self.times[1] - self.times[0]) / (self.looks.max(2) - 1) as f64;
-        Motion::lags().map(|lag| lag as f64 * between).collect()
+        MotionHistory::lags().map(|lag| lag as f64 * between).collect()
     }
 
     /// Largest number of samples stored after a number of them, about: eight, and half of seven for each power of two whose lags reach farther
@@ -138,7 +143,7 @@ impl Motion {
         }
         self.times[1] = time;
         let later = &self.kept[self.kept.len() - 1].1;
-        for (place, lag) in Motion::lags().enumerate() {
+        for (place, lag) in MotionHistory::lags().enumerate() {
             let Some(earlier) = look.checked_sub(lag) else { break };
             // Only samples whose number is divisible by the lag's power of two are stored long enough.
             let Ok(at) = self.kept.binary_search_by_key(&earlier, |(look, _)| *look) else { continue };
@@ -157,29 +162,29 @@ impl Motion {
 
 /// Means over the discs present in both samples.
 fn means(earlier: &[[f64; 4]], later: &[[f64; 4]]) -> Option<[f64; 4]> {
-    let mut sums = Sums { sums: [[0.0; 4]; LANES], count: 0 };
+    let mut sums = MotionSums { sums: [[0.0; 4]; LANES], count: 0 };
     // The dispatch selects an instruction set of this processor.
-    dispatch_best(Meeting { earlier, later, to: &mut sums });
+    dispatch_best(MotionTask { earlier, later, to: &mut sums });
     let total = |place: usize| sums.sums.iter().map(|lane| lane[place]).sum::<f64>();
     (sums.count > 0).then(|| [0, 1, 2, 3].map(|place| total(place) / sums.count as f64))
 }
 
 /// Sums over discs, distributed to lanes in turn.
-struct Sums {
+struct MotionSums {
     sums: [[f64; 4]; LANES],
     count: u64,
 }
 
-struct Meeting<'m> {
+struct MotionTask<'m> {
     earlier: &'m [[f64; 4]],
     later: &'m [[f64; 4]],
-    to: &'m mut Sums,
+    to: &'m mut MotionSums,
 }
 
-impl Task<f64> for Meeting<'_> {
+impl RegisterTask<f64> for MotionTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, _: R) {
-        let Meeting { earlier, later, to } = self;
+        let MotionTask { earlier, later, to } = self;
         let mut sums = [[0.0; 4]; LANES];
         let mut add = |lane: usize, a: &[f64; 4], b: &[f64; 4]| {
             let [x, y] = [b[0] - a[0], b[1] - a[1]];
@@ -202,7 +207,7 @@ impl Task<f64> for Meeting<'_> {
         for (lane, (a, b)) in rest_a.iter().zip(rest_b).enumerate() {
             count += add(lane, a, b);
         }
-        *to = Sums { sums, count };
+        *to = MotionSums { sums, count };
     }
 }
 

@@ -1,16 +1,16 @@
 //! Neighbours of each disc: their number, and hexatic order. Every other disc counts once, by its nearest image.
 
-use super::cells::{AT_ONCE, Cells};
-use super::discs::Discs;
+use super::cells::{AT_ONCE, SampleCells};
+use super::discs::SampledDiscs;
 use super::pairs::ways;
-use super::setting::Setting;
+use super::setting::StructureSetting;
 use crate::domain::Domain;
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
 };
 use std::f64::consts::PI;
 use std::ops::Range;
-use stripmine_kernels::backend::{Registers, Task, dispatch_best};
+use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_best};
 
 /// Largest distance of neighbours, in sums of the radii.
 const NEIGHBOURS: f64 = 1.5;
@@ -27,14 +27,14 @@ const LOOKED_FOR: [f64; 3] = [1.8, 2.7, 4.0];
 /// Neighbours of all discs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Neighbours {
-    parts: Vec<Around>,
+    parts: Vec<NeighbourSums>,
     /// True if ψ6 of each disc is stored beside the sums.
     pub(super) keeps_each: bool,
 }
 
 /// Sums over the neighbours of some discs, with buffers for one disc.
 #[derive(Clone, Debug)]
-struct Around {
+struct NeighbourSums {
     /// Discs by number of neighbours, discs with more than any line has, and the total number of neighbours.
     numbers: Vec<u32>,
     beyond: u32,
@@ -58,19 +58,19 @@ struct Around {
 
 impl Neighbours {
     /// Search radius for neighbours and the six nearest (length).
-    pub(super) fn reach(setting: &Setting, discs: usize) -> f64 {
+    pub(super) fn reach(setting: &StructureSetting, discs: usize) -> f64 {
         (2.0 * NEIGHBOURS * setting.largest_radius).max(Neighbours::looked_for(setting, discs)[2])
     }
 
-    fn looked_for(setting: &Setting, discs: usize) -> [f64; 3] {
+    fn looked_for(setting: &StructureSetting, discs: usize) -> [f64; 3] {
         let [x, y] = setting.room();
         let apart = (x * y / discs as f64).sqrt();
         LOOKED_FOR.map(|distances| distances * apart)
     }
 
     /// Finds the neighbours of every disc.
-    pub(super) fn find(&mut self, setting: &Setting, discs: &Discs, cells: &Cells) {
-        let none = Around {
+    pub(super) fn find(&mut self, setting: &StructureSetting, discs: &SampledDiscs, cells: &SampleCells) {
+        let none = NeighbourSums {
             numbers: vec![0; most_neighbours(setting) + 1],
             beyond: 0,
             neighbours: 0,
@@ -91,7 +91,8 @@ impl Neighbours {
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(|(around, rows)| {
             let rows = rows.clone();
             let domain = &setting.domain;
-            let looking = Looking { discs, domain, cells, rows, looked_for, largest, keeps_each, around };
+            let looking =
+                NeighbourTask { discs, domain, cells, rows, looked_for, largest, keeps_each, around };
             dispatch_best(looking);
         });
     }
@@ -105,7 +106,7 @@ impl Neighbours {
     }
 
     /// Sum of a number over the tasks, in their order.
-    fn sum<T: Into<f64>>(&self, of: impl Fn(&Around) -> T) -> f64 {
+    fn sum<T: Into<f64>>(&self, of: impl Fn(&NeighbourSums) -> T) -> f64 {
         self.parts.iter().map(|part| of(part).into()).sum()
     }
 
@@ -116,21 +117,21 @@ impl Neighbours {
 }
 
 /// Neighbour search for the discs of some rows.
-struct Looking<'c> {
-    discs: &'c Discs,
+struct NeighbourTask<'c> {
+    discs: &'c SampledDiscs,
     domain: &'c Domain,
-    cells: &'c Cells,
+    cells: &'c SampleCells,
     rows: Range<usize>,
     looked_for: [f64; 3],
     largest: f64,
     keeps_each: bool,
-    around: &'c mut Around,
+    around: &'c mut NeighbourSums,
 }
 
-impl Task<f64> for Looking<'_> {
+impl RegisterTask<f64> for NeighbourTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, _: R) {
-        let Looking { discs, domain, cells, rows, looked_for, largest, keeps_each, around } = self;
+        let NeighbourTask { discs, domain, cells, rows, looked_for, largest, keeps_each, around } = self;
         let radius = &discs.radius;
         around.begin();
         // Images farther than half a side are not the nearest ones.
@@ -180,7 +181,7 @@ impl Task<f64> for Looking<'_> {
     }
 }
 
-impl Around {
+impl NeighbourSums {
     /// Resets the sums.
     fn begin(&mut self) {
         self.numbers.fill(0);
@@ -196,7 +197,7 @@ impl Around {
     #[inline(always)]
     fn look(
         &mut self,
-        cells: &Cells,
+        cells: &SampleCells,
         row: usize,
         own: usize,
         reach: f64,
@@ -240,7 +241,7 @@ impl Around {
     }
 
     /// Stores all other discs, at any distance.
-    fn look_at_all(&mut self, domain: &Domain, discs: &Discs, own: usize) -> usize {
+    fn look_at_all(&mut self, domain: &Domain, discs: &SampledDiscs, own: usize) -> usize {
         for column in [&mut self.squares, &mut self.right, &mut self.up] {
             column.clear();
         }
@@ -309,7 +310,7 @@ impl Around {
 }
 
 /// Largest number of neighbours with a line: as many of the smallest discs as fit around the largest one. Discs may overlap a little.
-fn most_neighbours(setting: &Setting) -> usize {
+fn most_neighbours(setting: &StructureSetting) -> usize {
     let [large, small] = [setting.largest_radius, setting.smallest_radius];
     let rim = NEIGHBOURS * (large + small) + small;
     let fit = (rim * rim - large * large) / (small * small);
@@ -317,19 +318,19 @@ fn most_neighbours(setting: &Setting) -> usize {
 }
 
 /// Number of candidates for the neighbours of a disc of mean size, about.
-pub(super) fn candidates(setting: &Setting, discs: usize) -> f64 {
+pub(super) fn candidates(setting: &StructureSetting, discs: usize) -> f64 {
     let [x, y] = setting.room();
     let near = (NEIGHBOURS * (0.5 * setting.diameter + setting.largest_radius))
         .max(Neighbours::looked_for(setting, discs)[0]);
     (PI * near * near * discs as f64 / (x * y)).min(discs as f64)
 }
 
-pub(super) fn neighbour_numbers(setting: &Setting) -> Vec<f64> {
+pub(super) fn neighbour_numbers(setting: &StructureSetting) -> Vec<f64> {
     (0..=most_neighbours(setting)).map(|number| number as f64).collect()
 }
 
 /// Computes the fractions of discs by their number of neighbours, then the mean number, and the fraction of discs with more than any line has.
-pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]) {
+pub(super) fn coordination(discs: &SampledDiscs, found: &Neighbours, values: &mut [f64]) {
     let discs = discs.x.len() as f64;
     let (shares, whole) = values.split_at_mut(values.len() - 2);
     for (number, value) in shares.iter_mut().enumerate() {
@@ -340,7 +341,7 @@ pub(super) fn coordination(discs: &Discs, found: &Neighbours, values: &mut [f64]
 }
 
 /// Centres of the bins of |ψ6|.
-pub(super) fn orders(_: &Setting) -> Vec<f64> {
+pub(super) fn orders(_: &StructureSetting) -> Vec<f64> {
     (0..ORDERS).map(|bin| (bin as f64 + 0.5) / ORDERS as f64).collect()
 }
 

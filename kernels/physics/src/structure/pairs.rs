@@ -1,24 +1,24 @@
 //! Pairs of discs by their distance, and the pair correlation g(r).
 
-use super::cells::{AT_ONCE, Cells};
-use super::discs::Discs;
-use super::setting::Setting;
+use super::cells::{AT_ONCE, SampleCells};
+use super::discs::SampledDiscs;
+use super::setting::StructureSetting;
 use crate::particles::Particle;
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
 };
 use std::ops::Range;
-use stripmine_kernels::backend::{Registers, Task, dispatch_best};
+use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_best};
 
 /// Bins of distances in a mean diameter; an integer, so that one of them starts at contact.
 pub(super) const BINS: f64 = 50.0;
 /// Number of bins of distances.
-pub(super) fn bins(setting: &Setting) -> usize {
+pub(super) fn bins(setting: &StructureSetting) -> usize {
     (setting.reach * BINS / setting.diameter + 1e-9).floor() as usize
 }
 
 /// Centres of the bins of distances (length).
-pub(super) fn distances(setting: &Setting) -> Vec<f64> {
+pub(super) fn distances(setting: &StructureSetting) -> Vec<f64> {
     (0..bins(setting)).map(|bin| (bin as f64 + 0.5) * setting.diameter / BINS).collect()
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Distances {
 
 impl Distances {
     /// Counts each pair once: every disc of the box with those behind it in its row and with those in the rows above.
-    pub(super) fn count(&mut self, setting: &Setting, cells: &Cells) {
+    pub(super) fn count(&mut self, setting: &StructureSetting, cells: &SampleCells) {
         let count = bins(setting);
         let halves: Vec<f64> = cells.halves(setting.reach).collect();
         self.parts.resize(cells.parts.len(), vec![]);
@@ -40,7 +40,7 @@ impl Distances {
             counts.clear();
             counts.resize(count + 1, 0);
             let by_length = BINS / setting.diameter;
-            let counting = Counting { cells, rows: rows.clone(), halves: &halves, by_length, counts };
+            let counting = PairCountTask { cells, rows: rows.clone(), halves: &halves, by_length, counts };
             // The dispatch selects an instruction set of this processor.
             dispatch_best(counting);
         };
@@ -54,18 +54,18 @@ impl Distances {
 }
 
 /// Count of the pairs of some rows of the box.
-struct Counting<'c> {
-    cells: &'c Cells,
+struct PairCountTask<'c> {
+    cells: &'c SampleCells,
     rows: Range<usize>,
     halves: &'c [f64],
     by_length: f64,
     counts: &'c mut [u32],
 }
 
-impl Task<f64> for Counting<'_> {
+impl RegisterTask<f64> for PairCountTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, _: R) {
-        let Counting { cells, rows, halves, by_length, counts } = self;
+        let PairCountTask { cells, rows, halves, by_length, counts } = self;
         let far = (counts.len() - 1) as f64;
         for row in rows {
             for own in cells.own(row) {
@@ -93,7 +93,7 @@ impl Task<f64> for Counting<'_> {
 
 /// Vectors from a position to consecutive discs along x and y (length), and the squared distances.
 #[inline(always)]
-pub(super) fn ways(cells: &Cells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_ONCE]; 3] {
+pub(super) fn ways(cells: &SampleCells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_ONCE]; 3] {
     let [mut right, mut up, mut squares] = [[0.0; AT_ONCE]; 3];
     right.copy_from_slice(&cells.x[first..first + AT_ONCE]);
     up.copy_from_slice(&cells.y[first..first + AT_ONCE]);
@@ -106,17 +106,18 @@ pub(super) fn ways(cells: &Cells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_O
 }
 
 /// Counts pairs of discs by the bin of their distance with a cell search.
-pub fn pair_counts(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
+pub fn pair_counts(setting: &StructureSetting, discs: &[Particle]) -> Vec<u64> {
     let of = |place: fn(&Particle) -> f64| discs.iter().map(place).collect();
-    let discs = Discs { x: of(|it| it.position[0]), y: of(|it| it.position[1]), ..Discs::default() };
-    let (mut cells, mut distances) = (Cells::default(), Distances::default());
+    let discs =
+        SampledDiscs { x: of(|it| it.position[0]), y: of(|it| it.position[1]), ..SampledDiscs::default() };
+    let (mut cells, mut distances) = (SampleCells::default(), Distances::default());
     cells.sort(setting, &discs, setting.reach);
     distances.count(setting, &cells);
     distances.counts
 }
 
 /// Counts pairs of discs by a loop over all of them: the reference for tests.
-pub fn pair_counts_of_all(setting: &Setting, discs: &[Particle]) -> Vec<u64> {
+pub fn pair_counts_of_all(setting: &StructureSetting, discs: &[Particle]) -> Vec<u64> {
     let mut counts = vec![0; bins(setting)];
     for (number, own) in discs.iter().enumerate() {
         for other in &discs[number + 1..] {
@@ -138,7 +139,7 @@ pub(super) fn correlation_over(found: &Distances, pairs: &[f64], values: &mut [f
 }
 
 /// g(r) in each bin: pairs over the mean number in an ideal gas, where each pair has a probability `chance`.
-pub(super) fn correlation(discs: &Discs, found: &Distances, chances: &[f64], values: &mut [f64]) {
+pub(super) fn correlation(discs: &SampledDiscs, found: &Distances, chances: &[f64], values: &mut [f64]) {
     let discs = discs.x.len() as f64;
     let pairs = 0.5 * discs * (discs - 1.0);
     for ((value, &count), &chance) in values.iter_mut().zip(&found.counts).zip(chances) {

@@ -8,7 +8,7 @@ const REACH: f64 = 4.0;
 
 /// Box, and lengths that define bins.
 #[derive(Clone, Copy, Debug)]
-pub struct Setting {
+pub struct StructureSetting {
     /// Box.
     pub domain: Domain,
     /// Mean initial diameter (length).
@@ -25,18 +25,18 @@ pub struct Setting {
     pub has_open_top: bool,
 }
 
-impl Setting {
+impl StructureSetting {
     /// Setting of a box and its initial discs.
-    pub fn new(domain: Domain, particles: &Particles) -> Setting {
-        Setting::of(domain, particles, false)
+    pub fn new(domain: Domain, particles: &Particles) -> StructureSetting {
+        StructureSetting::of(domain, particles, false)
     }
 
     /// Setting of a box without a ceiling. The second side is the height stated by the scene, up to which profiles extend.
-    pub fn with_open_top(domain: Domain, particles: &Particles) -> Setting {
-        Setting::of(domain, particles, true)
+    pub fn with_open_top(domain: Domain, particles: &Particles) -> StructureSetting {
+        StructureSetting::of(domain, particles, true)
     }
 
-    fn of(domain: Domain, particles: &Particles, has_open_top: bool) -> Setting {
+    fn of(domain: Domain, particles: &Particles, has_open_top: bool) -> StructureSetting {
         let discs = particles.grains();
         let diameter = 2.0 * discs.iter().map(|disc| disc.radius).sum::<f64>() / discs.len() as f64;
         let reaches = [0, 1].map(|axis| match domain.is_periodic(axis) {
@@ -47,7 +47,15 @@ impl Setting {
         let reach = reaches.into_iter().fold(REACH * diameter, f64::min).max(0.0);
         let largest_radius = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let smallest_radius = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
-        Setting { domain, diameter, largest_radius, smallest_radius, discs: discs.len(), reach, has_open_top }
+        StructureSetting {
+            domain,
+            diameter,
+            largest_radius,
+            smallest_radius,
+            discs: discs.len(),
+            reach,
+            has_open_top,
+        }
     }
 
     /// Sides of the rectangle that centres of discs of the mean size can reach without wall discs (length).

@@ -1,7 +1,7 @@
 //! Distributions of single-disc properties: velocities and positions.
 
-use super::discs::Discs;
-use super::setting::Setting;
+use super::discs::SampledDiscs;
+use super::setting::StructureSetting;
 
 /// Width of the bins of velocities, and their number: from −5 to 5.
 const VELOCITIES: (f64, usize) = (0.1, 100);
@@ -9,13 +9,13 @@ const VELOCITIES: (f64, usize) = (0.1, 100);
 const SLICES: usize = 100;
 
 /// Centres of the bins of velocities.
-pub(super) fn speeds(_: &Setting) -> Vec<f64> {
+pub(super) fn speeds(_: &StructureSetting) -> Vec<f64> {
     let (width, count) = VELOCITIES;
     (0..count).map(|bin| (bin as f64 + 0.5 - 0.5 * count as f64) * width).collect()
 }
 
 /// Computes the density of the components of v/√(kT/m), and their kurtosis, which is 3 for a Maxwell distribution.
-pub(super) fn velocities(discs: &Discs, values: &mut [f64], weights: &mut [f64]) {
+pub(super) fn velocities(discs: &SampledDiscs, values: &mut [f64], weights: &mut [f64]) {
     let (width, count) = VELOCITIES;
     let components = 2.0 * discs.x.len() as f64;
     let moving = || discs.vx.iter().zip(&discs.vy).zip(&discs.mass);
@@ -41,14 +41,14 @@ pub(super) fn velocities(discs: &Discs, values: &mut [f64], weights: &mut [f64])
 }
 
 /// Centres of slices of the box along an axis (length).
-pub(super) fn slices<const AXIS: usize>(setting: &Setting) -> Vec<f64> {
+pub(super) fn slices<const AXIS: usize>(setting: &StructureSetting) -> Vec<f64> {
     let (origin, width) = (setting.domain.origin[AXIS], setting.domain.length(AXIS) / SLICES as f64);
     (0..SLICES).map(|slice| origin + (slice as f64 + 0.5) * width).collect()
 }
 
 /// Number of discs, mass, momentum and twice the kinetic energy in each slice. Discs above an open top are in none.
-fn sums<const AXIS: usize>(setting: &Setting, discs: &Discs) -> [[f64; 5]; SLICES] {
-    let Setting { domain, has_open_top, .. } = setting;
+fn sums<const AXIS: usize>(setting: &StructureSetting, discs: &SampledDiscs) -> [[f64; 5]; SLICES] {
+    let StructureSetting { domain, has_open_top, .. } = setting;
     let by_length = SLICES as f64 / domain.length(AXIS);
     let places = if AXIS == 0 { &discs.x } else { &discs.y };
     let mut sums = [[0.0; 5]; SLICES];
@@ -67,12 +67,12 @@ fn sums<const AXIS: usize>(setting: &Setting, discs: &Discs) -> [[f64; 5]; SLICE
 /// Number density of discs (1/length²) in each slice. With an open top, slices along the floor extend to the highest centre and are weighted by
 /// their area.
 pub(super) fn density<const AXIS: usize>(
-    setting: &Setting,
-    discs: &Discs,
+    setting: &StructureSetting,
+    discs: &SampledDiscs,
     values: &mut [f64],
     weights: &mut [f64],
 ) {
-    let Setting { domain, has_open_top, .. } = setting;
+    let StructureSetting { domain, has_open_top, .. } = setting;
     let mut area = domain.area();
     if AXIS == 0 && *has_open_top {
         let height = discs.y.iter().fold(0.0, |most: f64, y| most.max(y - domain.origin[1]));
@@ -85,8 +85,8 @@ pub(super) fn density<const AXIS: usize>(
 
 /// Velocity across the axis (length/time): Σmv/Σm, weighted by the mass in the slice; 0 without discs.
 pub(super) fn flow<const AXIS: usize>(
-    setting: &Setting,
-    discs: &Discs,
+    setting: &StructureSetting,
+    discs: &SampledDiscs,
     values: &mut [f64],
     weights: &mut [f64],
 ) {
@@ -100,8 +100,8 @@ pub(super) fn flow<const AXIS: usize>(
 /// kT of both components relative to the flow of the slice, which removes one disc's degrees of freedom: Σm|v − u|²/(2(n − 1)), weighted by n − 1;
 /// 0 for fewer than two discs.
 pub(super) fn temperature<const AXIS: usize>(
-    setting: &Setting,
-    discs: &Discs,
+    setting: &StructureSetting,
+    discs: &SampledDiscs,
     values: &mut [f64],
     weights: &mut [f64],
 ) {

@@ -1,11 +1,11 @@
 //! Density waves along the periodic axes of the box.
 
-use super::discs::Discs;
-use super::setting::Setting;
+use super::discs::SampledDiscs;
+use super::setting::StructureSetting;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayon::slice::ParallelSlice;
 use std::f64::consts::TAU;
-use stripmine_kernels::backend::{Registers, Task, dispatch_best};
+use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_best};
 
 /// Waves along an axis: the number of the longest ones, then the number of others up to the largest wave number, and that number times the
 /// diameter.
@@ -17,11 +17,11 @@ const AT_A_TIME: usize = 512;
 const LANES: usize = 8;
 
 /// Complex number of each of some discs.
-type Turns = [[f64; LANES]; 2];
+type Phasors = [[f64; LANES]; 2];
 
 /// Periods along a side of each of its waves: all up to the largest wave number if these are not too many, else the longest and, evenly between
 /// these and the shortest, as many others.
-fn periods(setting: &Setting, axis: usize) -> Vec<u32> {
+fn periods(setting: &StructureSetting, axis: usize) -> Vec<u32> {
     let [longest, others] = WAVES;
     let most = (LARGEST / setting.diameter * setting.domain.length(axis) / TAU) as u32;
     if most <= longest + others {
@@ -33,24 +33,24 @@ fn periods(setting: &Setting, axis: usize) -> Vec<u32> {
 }
 
 /// Periodic axes of the box.
-fn axes(setting: &Setting) -> impl Iterator<Item = usize> {
+fn axes(setting: &StructureSetting) -> impl Iterator<Item = usize> {
     let domain = setting.domain;
     (0..2).filter(move |&axis| domain.is_periodic(axis))
 }
 
 /// Number of sums that a disc contributes to.
-pub(super) fn sums_of_a_disc(setting: &Setting) -> usize {
+pub(super) fn sums_of_a_disc(setting: &StructureSetting) -> usize {
     axes(setting).map(|axis| periods(setting, axis).len()).sum()
 }
 
 /// Largest memory of the sums of waves along an axis (bytes).
 pub(super) fn bytes_of_waves(discs: usize) -> u64 {
     let waves = WAVES.iter().sum::<u32>() as usize;
-    (discs.div_ceil(AT_A_TIME) * waves * size_of::<Turns>()) as u64
+    (discs.div_ceil(AT_A_TIME) * waves * size_of::<Phasors>()) as u64
 }
 
 /// Wave vector of each wave (1/length): those along x, then those along y.
-pub(super) fn vectors(setting: &Setting) -> Vec<[f64; 2]> {
+pub(super) fn vectors(setting: &StructureSetting) -> Vec<[f64; 2]> {
     let along = |axis: usize| {
         let of = move |periods: u32| {
             let mut vector = [0.0; 2];
@@ -70,14 +70,14 @@ pub(super) fn factor(waves: &Waves, values: &mut [f64]) {
 /// Waves of a box, and their sums.
 #[derive(Clone, Debug)]
 pub(super) struct Waves {
-    along: Vec<Along>,
+    along: Vec<AxisWaves>,
     factor: Vec<f64>,
-    parts: Vec<Vec<Turns>>,
+    parts: Vec<Vec<Phasors>>,
 }
 
 /// Waves along an axis, each a step of periods from the one before.
 #[derive(Clone, Debug)]
-struct Along {
+struct AxisWaves {
     axis: usize,
     /// Different steps that occur.
     different: Vec<u32>,
@@ -87,7 +87,7 @@ struct Along {
 
 impl Waves {
     /// Waves of a box.
-    pub(super) fn new(setting: &Setting) -> Waves {
+    pub(super) fn new(setting: &StructureSetting) -> Waves {
         let of = |axis: usize| {
             let ends = periods(setting, axis).into_iter();
             let steps: Vec<u32> =
@@ -96,7 +96,7 @@ impl Waves {
             different.sort_unstable();
             different.dedup();
             let steps = steps.iter().map(|step| different.partition_point(|it| it < step)).collect();
-            Along { axis, different, steps }
+            AxisWaves { axis, different, steps }
         };
         Waves {
             along: axes(setting).map(of).collect(),
@@ -106,23 +106,23 @@ impl Waves {
     }
 
     /// Sums over the discs.
-    pub(super) fn sum(&mut self, setting: &Setting, discs: &Discs) {
+    pub(super) fn sum(&mut self, setting: &StructureSetting, discs: &SampledDiscs) {
         let Waves { along, factor, parts } = self;
         let count = discs.x.len();
         let mut values = factor.iter_mut();
         parts.resize(count.div_ceil(AT_A_TIME), vec![]);
-        for Along { axis, different, steps } in &*along {
+        for AxisWaves { axis, different, steps } in &*along {
             let by_length = TAU / setting.domain.length(*axis);
             let origin = setting.domain.origin[*axis];
             let places = if *axis == 0 { &discs.x } else { &discs.y };
             parts.par_iter_mut().zip(places.par_chunks(AT_A_TIME)).for_each(|(sums, places)| {
                 sums.clear();
                 sums.resize(steps.len(), [[0.0; LANES]; 2]);
-                let summing = Summing { places, origin, by_length, different, steps, sums };
+                let summing = WaveTask { places, origin, by_length, different, steps, sums };
                 dispatch_best(summing);
             });
             for (wave, value) in values.by_ref().take(steps.len()).enumerate() {
-                let part = |sums: &Vec<Turns>| sums[wave].map(|lanes| lanes.iter().sum::<f64>());
+                let part = |sums: &Vec<Phasors>| sums[wave].map(|lanes| lanes.iter().sum::<f64>());
                 // The sum is in the order of the discs for any number of threads.
                 let [x, y] = parts.iter().map(part).fold([0.0; 2], |[x, y], [a, b]| [x + a, y + b]);
                 *value = (x * x + y * y) / count as f64;
@@ -132,19 +132,19 @@ impl Waves {
 }
 
 /// Sum of exp(ikr) over some discs for each wave along an axis.
-struct Summing<'w> {
+struct WaveTask<'w> {
     places: &'w [f64],
     origin: f64,
     by_length: f64,
     different: &'w [u32],
     steps: &'w [usize],
-    sums: &'w mut [Turns],
+    sums: &'w mut [Phasors],
 }
 
-impl Task<f64> for Summing<'_> {
+impl RegisterTask<f64> for WaveTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, _: R) {
-        let Summing { places, origin, by_length, different, steps, sums } = self;
+        let WaveTask { places, origin, by_length, different, steps, sums } = self;
         let mut turns = vec![[[0.0; LANES]; 2]; different.len()];
         for places in places.chunks(LANES) {
             // Missing discs add nothing.
@@ -166,7 +166,7 @@ impl Task<f64> for Summing<'_> {
 }
 
 #[inline(always)]
-fn product(a: &Turns, b: &Turns) -> Turns {
+fn product(a: &Phasors, b: &Phasors) -> Phasors {
     let mut product = [[0.0; LANES]; 2];
     for at in 0..LANES {
         product[0][at] = a[0][at] * b[0][at] - a[1][at] * b[1][at];
@@ -177,7 +177,7 @@ fn product(a: &Turns, b: &Turns) -> Turns {
 
 /// Power by repeated squaring.
 #[inline(always)]
-fn power(one: &Turns, exponent: u32) -> Turns {
+fn power(one: &Phasors, exponent: u32) -> Phasors {
     let (mut square, mut rest) = (*one, exponent);
     let mut power = [[1.0; LANES], [0.0; LANES]];
     while rest > 0 {

@@ -3,8 +3,8 @@
 use super::heights;
 use super::neighbours::candidates as neighbours_looked_at;
 use super::waves::{bytes_of_waves, sums_of_a_disc};
-use super::{Asks, Motion, Observable, Seen, Setting};
-use crate::particles::{Particle, States};
+use super::{MotionHistory, SampleData, SamplingKind, StructureObservable, StructureSetting};
+use crate::particles::{GrainStates, Particle};
 use std::f64::consts::PI;
 
 /// Cost for each disc (ns): to copy it, for a pair within reach, for its neighbours and each candidate, in a density wave, for single-disc
@@ -22,14 +22,14 @@ const FOLLOWED: f64 = 20.0;
 const VALUE: f64 = 8.0;
 
 /// Cost of sampling a row and a snapshot for each disc (ns).
-fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> [f64; 2] {
+fn nanoseconds(observables: &[&StructureObservable], setting: &StructureSetting, discs: usize) -> [f64; 2] {
     let [mut row, mut snapshot]: [f64; 2] = [0.0; 2];
     let (mut found, [x, y]) = (vec![], setting.room());
     let density = discs as f64 / (x * y);
     for observable in observables {
         let (over, asks) = match observable.seen {
-            Seen::Once { over, asks, .. } => (over, asks),
-            Seen::Twice { follows, .. } => {
+            SamplingKind::Once { over, asks, .. } => (over, asks),
+            SamplingKind::Twice { follows, .. } => {
                 row = row.max(ROW) + if follows { FOLLOWED } else { 0.0 };
                 continue;
             }
@@ -37,19 +37,19 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
         // Functions of few discs cost more for their values than for the discs.
         let values = VALUE * over.places(setting).len() as f64 / discs as f64;
         snapshot = snapshot.max(TAKEN_UP) + values;
-        if asks != Asks::Discs && found.contains(&asks) {
+        if asks != SampleData::Discs && found.contains(&asks) {
             continue;
         }
         found.push(asks);
         snapshot += match asks {
-            Asks::Discs => ALONE,
-            Asks::Forces => FORCES,
-            Asks::Distances => {
+            SampleData::Discs => ALONE,
+            SampleData::Forces => FORCES,
+            SampleData::Distances => {
                 let ideal = if setting.has_open_top { heights::nanoseconds(setting, discs) } else { 0.0 };
                 PAIR * 0.5 * PI * setting.reach * setting.reach * density + ideal
             }
-            Asks::Neighbours => NEIGHBOURS + CANDIDATE * neighbours_looked_at(setting, discs),
-            Asks::Waves => WAVE * sums_of_a_disc(setting) as f64,
+            SampleData::Neighbours => NEIGHBOURS + CANDIDATE * neighbours_looked_at(setting, discs),
+            SampleData::Waves => WAVE * sums_of_a_disc(setting) as f64,
         };
     }
     [row, snapshot]
@@ -58,8 +58,8 @@ fn nanoseconds(observables: &[&Observable], setting: &Setting, discs: usize) -> 
 /// Strides of sampled rows and snapshots such that sampling takes at most a share of a run's work. `work` is the cost between two of each (ns for
 /// each disc), 0 if unknown. If both are sampled, each has half the share.
 pub fn strides(
-    observables: &[&Observable],
-    setting: &Setting,
+    observables: &[&StructureObservable],
+    setting: &StructureSetting,
     discs: usize,
     share: f64,
     work: [f64; 2],
@@ -74,32 +74,34 @@ pub fn strides(
 }
 
 /// Memory for sampling in a run with at most `rows` samples of rows (bytes). Earlier samples are stored, twice while a checkpoint is written.
-pub(crate) fn bytes(observables: &[&Observable], discs: usize, rows: Option<u64>) -> u64 {
-    let moves = observables.iter().any(|observable| matches!(observable.seen, Seen::Twice { .. }));
-    let stands = observables.iter().any(|observable| matches!(observable.seen, Seen::Once { .. }));
+pub(crate) fn bytes(observables: &[&StructureObservable], discs: usize, rows: Option<u64>) -> u64 {
+    let moves = observables.iter().any(|observable| matches!(observable.seen, SamplingKind::Twice { .. }));
+    let stands = observables.iter().any(|observable| matches!(observable.seen, SamplingKind::Once { .. }));
     let state = size_of::<[f64; 4]>() as u64 * discs as u64;
     let mut bytes = 0;
     if moves {
         let follows = observables.iter().any(|observable| observable.follows_motion());
         let images = if follows { size_of::<[i32; 2]>() * discs } else { 0 };
-        bytes +=
-            (States::bytes(discs) + images) as u64 + 2 * state * Motion::most_kept(rows.unwrap_or(u64::MAX));
+        bytes += (GrainStates::bytes(discs) + images) as u64
+            + 2 * state * MotionHistory::most_kept(rows.unwrap_or(u64::MAX));
     }
     if stands {
         // Six columns, three in the order of cells with images, three of cells; sizes.
         let of_a_disc = size_of::<[f64; 6]>() + 2 * size_of::<[f64; 3]>() + 3 * size_of::<u32>();
-        let meets =
-            |observable: &&Observable| matches!(observable.seen, Seen::Once { asks: Asks::Forces, .. });
+        let meets = |observable: &&StructureObservable| {
+            matches!(observable.seen, SamplingKind::Once { asks: SampleData::Forces, .. })
+        };
         if observables.iter().any(meets) {
             // A copy of the particles, their positions, and the sums of every 512 of them.
             bytes += ((size_of::<Particle>() + 6 * size_of::<f64>()) * discs) as u64;
         }
-        let waves =
-            |observable: &&Observable| matches!(observable.seen, Seen::Once { asks: Asks::Waves, .. });
+        let waves = |observable: &&StructureObservable| {
+            matches!(observable.seen, SamplingKind::Once { asks: SampleData::Waves, .. })
+        };
         if observables.iter().any(waves) {
             bytes += bytes_of_waves(discs);
         }
-        bytes += (States::bytes(discs) + (of_a_disc + size_of::<[f64; 2]>()) * discs) as u64;
+        bytes += (GrainStates::bytes(discs) + (of_a_disc + size_of::<[f64; 2]>()) * discs) as u64;
     }
     bytes
 }

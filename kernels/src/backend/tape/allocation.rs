@@ -1,11 +1,11 @@
 //! Register allocation: few registers, each reused after its last reader.
 
-use super::instruction::{File, Instruction};
+use super::instruction::{Instruction, RegisterKind};
 use crate::isa::Element;
 use std::collections::HashMap;
 
 /// Number of registers per file, in the order of [`File::ALL`].
-pub(super) type FileSizes = [usize; File::ALL.len()];
+pub(super) type FileSizes = [usize; RegisterKind::ALL.len()];
 
 /// Renames the registers of straight-line code (each written once) to as few as possible.
 ///
@@ -19,7 +19,7 @@ pub(super) fn allocate<L: Element>(instructions: &mut [Instruction<L>]) -> FileS
         });
     }
     let mut renamed = HashMap::new();
-    let mut free: [Vec<u32>; File::ALL.len()] = Default::default();
+    let mut free: [Vec<u32>; RegisterKind::ALL.len()] = Default::default();
     let mut sizes: FileSizes = Default::default();
     for (at, instruction) in instructions.iter_mut().enumerate() {
         instruction.registers(|name| {

@@ -1,6 +1,6 @@
 //! Folding of loads into operands: executed code needs no copy of an array that is stored in memory as loaded.
 
-use super::instruction::{Action, Instruction, Number, Operand, Reference, RegisterName};
+use super::instruction::{ArrayReference, Instruction, Number, Operand, RegisterName, TapeAction};
 use crate::isa::Element;
 use std::collections::HashMap;
 
@@ -16,9 +16,9 @@ pub(super) fn fold_loads<L: Element>(instructions: &[Instruction<L>]) -> Vec<Ins
             last_use.insert(*name, at);
         });
     }
-    let mut folded: HashMap<RegisterName, Reference> = HashMap::new();
+    let mut folded: HashMap<RegisterName, ArrayReference> = HashMap::new();
     for (at, instruction) in instructions.iter().enumerate() {
-        if let Action::Number(to, Number::Load(reference) | Number::LoadShifted(reference)) =
+        if let TapeAction::Number(to, Number::Load(reference) | Number::LoadShifted(reference)) =
             instruction.action
         {
             let overwritten =
@@ -44,30 +44,30 @@ pub(super) fn fold_loads<L: Element>(instructions: &[Instruction<L>]) -> Vec<Ins
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::backend::tape::{Effect, File};
+    use crate::backend::tape::{Effect, RegisterKind};
     use crate::isa::Array;
     use crate::isa::op::{BinaryOp, UnaryOp};
 
     fn register(number: u32) -> RegisterName {
-        RegisterName { file: File::Number, number }
+        RegisterName { file: RegisterKind::Number, number }
     }
 
     fn number(to: u32, number: Number<f64>) -> Instruction<f64> {
-        Instruction { section: 0, action: Action::Number(register(to), number) }
+        Instruction { section: 0, action: TapeAction::Number(register(to), number) }
     }
 
-    fn store(to: Reference, value: Operand<f64>) -> Instruction<f64> {
-        Instruction { section: 0, action: Action::Effect(Effect::Store(to, value)) }
+    fn store(to: ArrayReference, value: Operand<f64>) -> Instruction<f64> {
+        Instruction { section: 0, action: TapeAction::Effect(Effect::Store(to, value)) }
     }
 
-    fn x(element: &'static str) -> Reference {
-        Reference { array: Array::ALL[0], element, shift: 3 }
+    fn x(element: &'static str) -> ArrayReference {
+        ArrayReference { array: Array::ALL[0], element, shift: 3 }
     }
 
     #[test]
     fn a_load_becomes_an_operand_of_its_readers() {
         let [a, b] = [0, 1].map(|number| Operand::Register(register(number)));
-        let to = Reference { array: Array::ALL[1], ..x("f64") };
+        let to = ArrayReference { array: Array::ALL[1], ..x("f64") };
         let passes = fold_loads(&[
             number(0, Number::LoadShifted(x("f64"))),
             number(1, Number::Binary(BinaryOp::Multiply, a, a)),

@@ -6,7 +6,7 @@ use crate::isa::{Array, Element, Op};
 
 /// Register files of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum File {
+pub enum RegisterKind {
     /// Vectors of numbers, `V`.
     Number,
     /// Vectors of truth values, `P`.
@@ -15,16 +15,16 @@ pub enum File {
     Index,
 }
 
-impl File {
+impl RegisterKind {
     /// Every register file.
-    pub const ALL: [File; 3] = [File::Number, File::Predicate, File::Index];
+    pub const ALL: [RegisterKind; 3] = [RegisterKind::Number, RegisterKind::Predicate, RegisterKind::Index];
 
     /// Letter in a listing.
     pub(crate) const fn letter(self) -> char {
         match self {
-            File::Number => 'V',
-            File::Predicate => 'P',
-            File::Index => 'I',
+            RegisterKind::Number => 'V',
+            RegisterKind::Predicate => 'P',
+            RegisterKind::Index => 'I',
         }
     }
 }
@@ -33,7 +33,7 @@ impl File {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RegisterName {
     /// Register file.
-    pub file: File,
+    pub file: RegisterKind,
     /// Number in the file.
     pub number: u32,
 }
@@ -46,12 +46,12 @@ pub enum Operand<L> {
     /// A scalar operand.
     Uniform(L),
     /// An array as stored in memory: a folded load in a pass, never on the recorded tape.
-    Memory(Reference),
+    Memory(ArrayReference),
 }
 
 /// Access of an instruction to an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reference {
+pub struct ArrayReference {
     /// The array.
     pub array: Array,
     /// Name of its element type.
@@ -61,13 +61,13 @@ pub struct Reference {
 }
 
 /// An operand of an action, by its kind in the table of operations.
-pub(super) enum Part<'a, L> {
+pub(super) enum OperandRef<'a, L> {
     V(&'a mut Operand<L>),
     P(&'a mut RegisterName),
     I(&'a mut RegisterName),
     At(&'a mut RegisterName),
-    Numbers(&'a mut Reference),
-    Entries(&'a mut Reference),
+    Numbers(&'a mut ArrayReference),
+    Entries(&'a mut ArrayReference),
     Counter(&'a mut u8),
 }
 
@@ -81,36 +81,36 @@ macro_rules! define_actions {
      )*])),* $(,)? }) => {
         define_actions! { {} {} {} $($($file { #[doc = $d] $form $(($($type),+))?, })*)* }
 
-        impl<L> Action<L> {
+        impl<L> TapeAction<L> {
             /// The operation, which determines name and class.
             pub fn op(&self) -> Op {
                 match self {
-                    Action::Number(_, Number::Binary(op, ..)) => op.op(),
-                    Action::Number(_, Number::Unary(op, _)) => op.op(),
-                    Action::Number(_, Number::Select(..)) => Op::Select,
-                    Action::Truth(_, Truth::Compare(op, ..)) => op.op(),
-                    Action::Truth(_, Truth::Connective(op, ..)) => op.op(),
-                    Action::Truth(_, Truth::Negation(op, _)) => op.op(),
-                    $($(Action::$file(.., $file::$form { .. }) => Op::$v,)*)*
+                    TapeAction::Number(_, Number::Binary(op, ..)) => op.op(),
+                    TapeAction::Number(_, Number::Unary(op, _)) => op.op(),
+                    TapeAction::Number(_, Number::Select(..)) => Op::Select,
+                    TapeAction::Truth(_, PredicateInstruction::Compare(op, ..)) => op.op(),
+                    TapeAction::Truth(_, PredicateInstruction::Connective(op, ..)) => op.op(),
+                    TapeAction::Truth(_, PredicateInstruction::Negation(op, _)) => op.op(),
+                    $($(TapeAction::$file(.., $file::$form { .. }) => Op::$v,)*)*
                 }
             }
 
             /// Calls `visit` with every operand, in the order of the table.
-            pub(super) fn parts(&mut self, mut visit: impl FnMut(Part<'_, L>)) {
+            pub(super) fn parts(&mut self, mut visit: impl FnMut(OperandRef<'_, L>)) {
                 match self {
-                    Action::Number(_, Number::Unary(_, a)) => visit(Part::V(a)),
-                    Action::Number(_, Number::Binary(_, a, b)) | Action::Truth(_, Truth::Compare(_, a, b)) => {
-                        [a, b].into_iter().for_each(|operand| visit(Part::V(operand)));
+                    TapeAction::Number(_, Number::Unary(_, a)) => visit(OperandRef::V(a)),
+                    TapeAction::Number(_, Number::Binary(_, a, b)) | TapeAction::Truth(_, PredicateInstruction::Compare(_, a, b)) => {
+                        [a, b].into_iter().for_each(|operand| visit(OperandRef::V(operand)));
                     }
-                    Action::Number(_, Number::Select(predicate, a, b)) => {
-                        visit(Part::P(predicate));
-                        [a, b].into_iter().for_each(|operand| visit(Part::V(operand)));
+                    TapeAction::Number(_, Number::Select(predicate, a, b)) => {
+                        visit(OperandRef::P(predicate));
+                        [a, b].into_iter().for_each(|operand| visit(OperandRef::V(operand)));
                     }
-                    Action::Truth(_, Truth::Connective(_, a, b)) => {
-                        [a, b].into_iter().for_each(|predicate| visit(Part::P(predicate)));
+                    TapeAction::Truth(_, PredicateInstruction::Connective(_, a, b)) => {
+                        [a, b].into_iter().for_each(|predicate| visit(OperandRef::P(predicate)));
                     }
-                    Action::Truth(_, Truth::Negation(_, a)) => visit(Part::P(a)),
-                    $($(Action::$file(.., $file::$form $(($($x),+))?) => { $($(visit(Part::$kind($x));)+)? })*)*
+                    TapeAction::Truth(_, PredicateInstruction::Negation(_, a)) => visit(OperandRef::P(a)),
+                    $($(TapeAction::$file(.., $file::$form $(($($x),+))?) => { $($(visit(OperandRef::$kind($x));)+)? })*)*
                 }
             }
         }
@@ -151,13 +151,13 @@ macro_rules! define_actions {
     };
 }
 for_each_op! {
-    @({V Operand<L>} {P RegisterName} {I RegisterName} {At RegisterName} {Numbers Reference} {Entries Reference} {Counter u8})
+    @({V Operand<L>} {P RegisterName} {I RegisterName} {At RegisterName} {Numbers ArrayReference} {Entries ArrayReference} {Counter u8})
     define_actions
 }
 
 /// Instructions that write a predicate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Truth<L> {
+pub enum PredicateInstruction<L> {
     /// Two numbers.
     Compare(CompareOp, Operand<L>, Operand<L>),
     /// Two predicates.
@@ -168,11 +168,11 @@ pub enum Truth<L> {
 
 /// Effect of an instruction on its operands, and the register that it writes, in the file given by the variant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Action<L> {
+pub enum TapeAction<L> {
     /// Writes a register of numbers.
     Number(RegisterName, Number<L>),
     /// Writes a predicate.
-    Truth(RegisterName, Truth<L>),
+    Truth(RegisterName, PredicateInstruction<L>),
     /// Writes an index vector.
     Indices(RegisterName, Indices<L>),
     /// Writes memory or a counter.
@@ -185,7 +185,7 @@ pub struct Instruction<L> {
     /// Index of its section.
     pub section: usize,
     /// Operation with operands.
-    pub action: Action<L>,
+    pub action: TapeAction<L>,
 }
 
 impl<L: Element> Instruction<L> {
@@ -197,16 +197,16 @@ impl<L: Element> Instruction<L> {
     /// Register that it writes, if any.
     pub fn to(&self) -> Option<RegisterName> {
         match self.action {
-            Action::Number(to, _) | Action::Truth(to, _) | Action::Indices(to, _) => Some(to),
-            Action::Effect(_) => None,
+            TapeAction::Number(to, _) | TapeAction::Truth(to, _) | TapeAction::Indices(to, _) => Some(to),
+            TapeAction::Effect(_) => None,
         }
     }
 
     /// Memory that it touches.
-    pub fn reference(&self) -> Option<Reference> {
+    pub fn reference(&self) -> Option<ArrayReference> {
         let (mut found, mut action) = (None, self.action);
         action.parts(|part| {
-            if let Part::Numbers(reference) | Part::Entries(reference) = part {
+            if let OperandRef::Numbers(reference) | OperandRef::Entries(reference) = part {
                 found = Some(*reference);
             }
         });
@@ -216,7 +216,7 @@ impl<L: Element> Instruction<L> {
     /// True if it accesses memory through an index vector.
     pub(super) fn is_indexed(&self) -> bool {
         let (mut found, mut action) = (false, self.action);
-        action.parts(|part| found |= matches!(part, Part::At(_)));
+        action.parts(|part| found |= matches!(part, OperandRef::At(_)));
         found
     }
 
@@ -224,7 +224,7 @@ impl<L: Element> Instruction<L> {
     pub fn operations(&self) -> impl Iterator<Item = Op> {
         let (mut converts, mut action) = (false, self.action);
         action.parts(|part| {
-            if let Part::Numbers(reference) = part {
+            if let OperandRef::Numbers(reference) = part {
                 converts = reference.element != L::NAME;
             }
         });
@@ -232,15 +232,15 @@ impl<L: Element> Instruction<L> {
     }
 
     /// True if it writes to the array that `reference` names.
-    pub(crate) fn overwrites(&self, reference: Reference) -> bool {
-        let is = |to: Reference| (to.array, to.element) == (reference.array, reference.element);
-        matches!(self.action, Action::Effect(_)) && self.reference().is_some_and(is)
+    pub(crate) fn overwrites(&self, reference: ArrayReference) -> bool {
+        let is = |to: ArrayReference| (to.array, to.element) == (reference.array, reference.element);
+        matches!(self.action, TapeAction::Effect(_)) && self.reference().is_some_and(is)
     }
 
     /// Calls `visit` with every operand of numbers.
     pub(crate) fn operands(&mut self, mut visit: impl FnMut(&mut Operand<L>)) {
         self.action.parts(|part| {
-            if let Part::V(operand) = part {
+            if let OperandRef::V(operand) = part {
                 visit(operand);
             }
         });
@@ -254,7 +254,7 @@ impl<L: Element> Instruction<L> {
             }
         });
         self.action.parts(|part| {
-            if let Part::P(name) | Part::I(name) | Part::At(name) = part {
+            if let OperandRef::P(name) | OperandRef::I(name) | OperandRef::At(name) = part {
                 visit(name);
             }
         });
@@ -263,7 +263,9 @@ impl<L: Element> Instruction<L> {
     /// Calls `visit` with every register it reads, then with the one it writes, if any.
     pub fn registers(&mut self, mut visit: impl FnMut(&mut RegisterName)) {
         self.reads(&mut visit);
-        if let Action::Number(to, _) | Action::Truth(to, _) | Action::Indices(to, _) = &mut self.action {
+        if let TapeAction::Number(to, _) | TapeAction::Truth(to, _) | TapeAction::Indices(to, _) =
+            &mut self.action
+        {
             visit(to);
         }
     }

@@ -1,15 +1,17 @@
 //! Interpreter of tapes, strip by strip: each instruction is a pass over the strip. A single strip is the unchained CRAY; short
 //! strips keep the registers in the cache.
 
-use super::instruction::{Action, Effect, Indices, Instruction, Number, Operand, RegisterName, Truth};
+use super::instruction::{
+    Effect, Indices, Instruction, Number, Operand, PredicateInstruction, RegisterName, TapeAction,
+};
 use super::pool;
 use super::recorded::Tape;
 use super::register_file::RegisterFile;
-use crate::backend::dispatch::{InstructionSet, Task, dispatch};
+use crate::backend::dispatch::{InstructionSet, RegisterTask, dispatch};
 use crate::backend::{IndexLanes, Precision, Registers, Scalar, Strip};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, UnaryOp};
-use crate::isa::{Array, Column, Counter, Memory, ProgramError, Slot, Storage, Vector};
+use crate::isa::{Array, ArrayColumn, LaneCounter, Memory, ProgramError, Slot, Storage, Vector};
 use std::cell::Cell;
 use std::ops::Range;
 
@@ -22,7 +24,7 @@ impl<L: Precision> Tape<L> {
         strip: usize,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
-        dispatch(set, Passes { tape: self, memory, range, strip })
+        dispatch(set, TapeRun { tape: self, memory, range, strip })
     }
 
     /// Sizes in bytes of the register files that [`interpret`](Self::interpret) allocates for strips of a number of elements:
@@ -33,19 +35,19 @@ impl<L: Precision> Tape<L> {
         set: InstructionSet,
     ) -> Result<[usize; 3], ProgramError> {
         let mut bytes = [0; 3];
-        dispatch::<L, _>(set, Sizes { counts: self.pass_sizes, strip, bytes: &mut bytes })?;
+        dispatch::<L, _>(set, RegisterSizes { counts: self.pass_sizes, strip, bytes: &mut bytes })?;
         Ok(bytes)
     }
 }
 
 /// Task that computes the sizes of the register files.
-struct Sizes<'r> {
+struct RegisterSizes<'r> {
     counts: [usize; 3],
     strip: usize,
     bytes: &'r mut [usize; 3],
 }
 
-impl<L: Precision> Task<L> for Sizes<'_> {
+impl<L: Precision> RegisterTask<L> for RegisterSizes<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, _: R) {
         let entries = [size_of::<R::V>(), size_of::<TruthOf<R>>(), size_of::<R::Index>()];
@@ -56,14 +58,14 @@ impl<L: Precision> Task<L> for Sizes<'_> {
 }
 
 /// An admitted run of a tape.
-struct Passes<'r, L> {
+struct TapeRun<'r, L> {
     tape: &'r Tape<L>,
     memory: &'r Memory<'r>,
     range: Range<usize>,
     strip: usize,
 }
 
-impl<L: Precision> Task<L> for Passes<'_, L> {
+impl<L: Precision> RegisterTask<L> for TapeRun<'_, L> {
     /// Executes strips of whole hardware registers, and the rest of each element by element: the bits are the same.
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, hardware: R) {
@@ -75,7 +77,7 @@ impl<L: Precision> Task<L> for Passes<'_, L> {
         for base in self.range.clone().step_by(strip.max(1)) {
             let length = strip.min(self.range.end - base);
             let registers = length / R::LANES;
-            whole.execute(self.tape, Span { hardware, memory: self.memory, base, length: registers });
+            whole.execute(self.tape, StripSpan { hardware, memory: self.memory, base, length: registers });
             let elements = length % R::LANES;
             rest.execute_elements(self.tape, self.memory, base + length - elements, elements);
         }
@@ -118,40 +120,40 @@ macro_rules! passes {
          $(($($x:ident $(@ $shift:ident)?: {$kind:ident $type:ty}),+))? $(-> {$result:ident $value:ty})?;
      )*])),* $(,)? }) => {
         match $action {
-            Action::Number(to, Number::Binary(op, a, b)) => {
+            TapeAction::Number(to, Number::Binary(op, a, b)) => {
                 let (to, a, b) = ($files.numbers.register(to.number), $files.source(a, $span), $files.source(b, $span));
                 match op {
                     $(BinaryOp::$ov => $span.binary(to, a, b, |_, a, b| std::ops::$trait::$of(a, b)),)*
                     $(BinaryOp::$bv => $span.binary(to, a, b, |_, a, b| a.$bf(b)),)*
                 }
             }
-            Action::Number(to, Number::Unary(op, a)) => {
+            TapeAction::Number(to, Number::Unary(op, a)) => {
                 let (to, a) = ($files.numbers.register(to.number), $files.source(a, $span));
                 match op {
                     $(UnaryOp::$uv => $span.unary(to, a, |_, a| a.$uf()),)*
                 }
             }
-            Action::Number(to, Number::Select(predicate, a, b)) => {
+            TapeAction::Number(to, Number::Select(predicate, a, b)) => {
                 let (to, a, b) = ($files.numbers.register(to.number), $files.source(a, $span), $files.source(b, $span));
                 let predicate = $files.predicate(*predicate);
                 $span.binary(to, a, b, |i, a, b| R::V::select(predicate[i].get(), a, b));
             }
-            Action::Truth(to, Truth::Compare(op, a, b)) => {
+            TapeAction::Truth(to, PredicateInstruction::Compare(op, a, b)) => {
                 let (to, a, b) = ($files.predicate(*to), $files.source(a, $span), $files.source(b, $span));
                 match op {
                     $(CompareOp::$cv => $span.binary(to, a, b, |_, a, b| a.$cf(b)),)*
                 }
             }
-            Action::Truth(to, Truth::Connective(op, a, b)) => {
+            TapeAction::Truth(to, PredicateInstruction::Connective(op, a, b)) => {
                 let (to, a, b) = ($files.predicate(*to), $files.predicate(*a), $files.predicate(*b));
                 $span.each(to, |i| op.apply(a[i].get(), b[i].get()));
             }
-            Action::Truth(to, Truth::Negation(op, a)) => {
+            TapeAction::Truth(to, PredicateInstruction::Negation(op, a)) => {
                 let (to, a) = ($files.predicate(*to), $files.predicate(*a));
                 $span.each(to, |i| op.apply(a[i].get()));
             }
             $($(
-                Action::$file($(first!(to $result),)? $file::$form $(($($x),+))?) => {
+                TapeAction::$file($(first!(to $result),)? $file::$form $(($($x),+))?) => {
                     $(let to = result!($files to $result);)?
                     pass!($files $span $(to $result)? = $f $($($x $($shift)?: $kind),+)?)
                 }
@@ -202,7 +204,7 @@ macro_rules! operand {
     ($files:ident $span:ident $x:ident P) => { &$files.predicate(*$x)[..$span.length] };
     ($files:ident $span:ident $x:ident I) => { &$files.index(*$x)[..$span.length] };
     ($files:ident $span:ident $x:ident At) => { &$files.index(*$x)[..$span.length] };
-    ($files:ident $span:ident $x:ident Counter) => { Counter(*$x) };
+    ($files:ident $span:ident $x:ident Counter) => { LaneCounter(*$x) };
     ($files:ident $span:ident $x:ident Entries) => { $span.column::<u32>($x.array) };
     ($files:ident $span:ident $x:ident $element:ident) => { $span.column::<$element>($x.array) };
 }
@@ -222,21 +224,21 @@ macro_rules! at {
 
 /// Source of an operand: consecutive lanes of a register or of memory, or a broadcast number.
 #[derive(Clone, Copy)]
-enum Source<L> {
+enum OperandSource<L> {
     Lanes(*const L),
     Uniform(L),
 }
 
 /// Strip of a pass: `length` hardware registers from element `base` on.
 #[derive(Clone, Copy)]
-struct Span<'m, R> {
+struct StripSpan<'m, R> {
     hardware: R,
     memory: &'m Memory<'m>,
     base: usize,
     length: usize,
 }
 
-impl<'m, R: Registers> Span<'m, R> {
+impl<'m, R: Registers> StripSpan<'m, R> {
     /// The machine at one hardware register.
     #[inline(always)]
     fn at(self, register: usize) -> Strip<'m, R> {
@@ -245,7 +247,7 @@ impl<'m, R: Registers> Span<'m, R> {
 
     /// Column of an array.
     #[inline(always)]
-    fn column<T: Storage>(self, array: Array) -> Column<T> {
+    fn column<T: Storage>(self, array: Array) -> ArrayColumn<T> {
         self.memory.column(Slot::new(array))
     }
 
@@ -264,11 +266,11 @@ impl<'m, R: Registers> Span<'m, R> {
     /// # Safety
     /// The source has the span's lanes.
     #[inline(always)]
-    unsafe fn lanes(self, source: Source<R::Lane>, register: usize) -> R::V {
+    unsafe fn lanes(self, source: OperandSource<R::Lane>, register: usize) -> R::V {
         match source {
             // SAFETY: the caller promises that the source has as many lanes as the span.
-            Source::Lanes(from) => unsafe { self.read(from, register) },
-            Source::Uniform(value) => self.hardware.splat(value),
+            OperandSource::Lanes(from) => unsafe { self.read(from, register) },
+            OperandSource::Uniform(value) => self.hardware.splat(value),
         }
     }
 
@@ -282,11 +284,11 @@ impl<'m, R: Registers> Span<'m, R> {
 
     /// Writes `f(register, a)` to every register.
     #[inline(always)]
-    fn unary<X: Copy>(self, to: &[Cell<X>], a: Source<R::Lane>, f: impl Fn(usize, R::V) -> X) {
+    fn unary<X: Copy>(self, to: &[Cell<X>], a: OperandSource<R::Lane>, f: impl Fn(usize, R::V) -> X) {
         match a {
             // SAFETY: a source is a register of the file or admitted memory, with all lanes of the span; i is below its length.
-            Source::Lanes(a) => self.each(to, |i| f(i, unsafe { self.read(a, i) })),
-            Source::Uniform(a) => {
+            OperandSource::Lanes(a) => self.each(to, |i| f(i, unsafe { self.read(a, i) })),
+            OperandSource::Uniform(a) => {
                 let a = self.hardware.splat(a);
                 self.each(to, |i| f(i, a));
             }
@@ -298,20 +300,20 @@ impl<'m, R: Registers> Span<'m, R> {
     fn binary<X: Copy>(
         self,
         to: &[Cell<X>],
-        a: Source<R::Lane>,
-        b: Source<R::Lane>,
+        a: OperandSource<R::Lane>,
+        b: OperandSource<R::Lane>,
         f: impl Fn(usize, R::V, R::V) -> X,
     ) {
         match (a, b) {
-            (Source::Lanes(a), Source::Lanes(b)) => {
+            (OperandSource::Lanes(a), OperandSource::Lanes(b)) => {
                 // SAFETY: sources are registers of the file or admitted memory, with all lanes of the span; i is below its length.
                 self.each(to, |i| f(i, unsafe { self.read(a, i) }, unsafe { self.read(b, i) }));
             }
-            (a, Source::Uniform(b)) => {
+            (a, OperandSource::Uniform(b)) => {
                 let b = self.hardware.splat(b);
                 self.unary(to, a, |i, a| f(i, a, b));
             }
-            (Source::Uniform(a), b) => {
+            (OperandSource::Uniform(a), b) => {
                 let a = self.hardware.splat(a);
                 self.unary(to, b, |i, b| f(i, a, b));
             }
@@ -323,7 +325,7 @@ impl<L: Precision> RegisterFiles<Scalar<L>> {
     /// Executes the kernel on `length` elements from `base` on; shared by all instruction sets.
     #[inline(never)]
     fn execute_elements(&self, tape: &Tape<L>, memory: &Memory<'_>, base: usize, length: usize) {
-        self.execute(tape, Span { hardware: Scalar::default(), memory, base, length });
+        self.execute(tape, StripSpan { hardware: Scalar::default(), memory, base, length });
     }
 }
 
@@ -342,7 +344,7 @@ impl<R: Registers> RegisterFiles<R> {
 
     /// Executes the kernel on one strip, instruction by instruction.
     #[inline(always)]
-    fn execute(&self, tape: &Tape<R::Lane>, span: Span<'_, R>) {
+    fn execute(&self, tape: &Tape<R::Lane>, span: StripSpan<'_, R>) {
         if span.length == 0 {
             return;
         }
@@ -352,16 +354,16 @@ impl<R: Registers> RegisterFiles<R> {
     }
 
     #[inline(always)]
-    fn source(&self, operand: &Operand<R::Lane>, span: Span<'_, R>) -> Source<R::Lane> {
+    fn source(&self, operand: &Operand<R::Lane>, span: StripSpan<'_, R>) -> OperandSource<R::Lane> {
         match operand {
             Operand::Register(name) => {
-                Source::Lanes(self.numbers.register(name.number)[..span.length].as_ptr().cast())
+                OperandSource::Lanes(self.numbers.register(name.number)[..span.length].as_ptr().cast())
             }
-            Operand::Uniform(value) => Source::Uniform(*value),
+            Operand::Uniform(value) => OperandSource::Uniform(*value),
             Operand::Memory(from) => {
                 let column = span.column::<R::Lane>(from.array);
                 // SAFETY: the memory was admitted: the footprint covers base + shift and the span's lanes behind it.
-                Source::Lanes(unsafe { column.at(span.base.wrapping_add_signed(from.shift)) })
+                OperandSource::Lanes(unsafe { column.at(span.base.wrapping_add_signed(from.shift)) })
             }
         }
     }
@@ -378,7 +380,7 @@ impl<R: Registers> RegisterFiles<R> {
 
     /// Executes one instruction on one strip.
     #[inline(always)]
-    fn step(&self, pass: &Instruction<R::Lane>, span: Span<'_, R>) {
+    fn step(&self, pass: &Instruction<R::Lane>, span: StripSpan<'_, R>) {
         for_each_op!(passes self span &pass.action;)
     }
 }

@@ -1,6 +1,6 @@
 //! Assembly listing of a kernel.
 
-use super::instruction::{Instruction, Operand, Part, Reference, RegisterName};
+use super::instruction::{ArrayReference, Instruction, Operand, OperandRef, RegisterName};
 use super::recorded::Tape;
 use crate::isa::Element;
 use serde::Serialize;
@@ -8,12 +8,12 @@ use std::fmt;
 
 impl<L: Element> Tape<L> {
     /// Assembly listing of the kernel.
-    pub fn listing(&self) -> Listing<'_, L> {
-        Listing(self)
+    pub fn listing(&self) -> TapeListing<'_, L> {
+        TapeListing(self)
     }
 
     /// Instructions in words.
-    pub fn lines(&self) -> Vec<Line> {
+    pub fn lines(&self) -> Vec<ListingLine> {
         self.instructions
             .iter()
             .map(|instruction| line(self.sections[instruction.section], instruction))
@@ -23,7 +23,7 @@ impl<L: Element> Tape<L> {
 
 /// An instruction in words.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Line {
+pub struct ListingLine {
     /// Purpose of its section of the kernel.
     pub section: &'static str,
     /// Mnemonic of the operation.
@@ -34,26 +34,26 @@ pub struct Line {
     pub sources: Vec<String>,
 }
 
-fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> Line {
+fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> ListingLine {
     let mut words = Vec::from_iter(instruction.to().map(|name| name.to_string()));
     let mut action = instruction.action;
     action.parts(|part| match part {
-        Part::V(operand) => words.push(operand.to_string()),
-        Part::P(name) | Part::I(name) => words.push(name.to_string()),
-        Part::Numbers(array) | Part::Entries(array) => words.push(array.to_string()),
-        Part::At(name) => {
+        OperandRef::V(operand) => words.push(operand.to_string()),
+        OperandRef::P(name) | OperandRef::I(name) => words.push(name.to_string()),
+        OperandRef::Numbers(array) | OperandRef::Entries(array) => words.push(array.to_string()),
+        OperandRef::At(name) => {
             let array = words.pop().unwrap_or_default();
             words.push(format!("{array}({name})"));
         }
-        Part::Counter(number) => words.push(format!("C{number}")),
+        OperandRef::Counter(number) => words.push(format!("C{number}")),
     });
     // The first word is the destination, also of an instruction that writes no register.
     let destination = words.remove(0);
-    Line { section, operation: instruction.op().mnemonic(), destination, sources: words }
+    ListingLine { section, operation: instruction.op().mnemonic(), destination, sources: words }
 }
 
 /// Prints a tape, one vector instruction per line.
-pub struct Listing<'t, L>(&'t Tape<L>);
+pub struct TapeListing<'t, L>(&'t Tape<L>);
 
 impl fmt::Display for RegisterName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -71,7 +71,7 @@ impl<L: Element> fmt::Display for Operand<L> {
     }
 }
 
-impl fmt::Display for Reference {
+impl fmt::Display for ArrayReference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.shift {
             0 => write!(f, "[{}]", self.array.label()),
@@ -80,11 +80,11 @@ impl fmt::Display for Reference {
     }
 }
 
-impl<L: Element> fmt::Display for Listing<'_, L> {
+impl<L: Element> fmt::Display for TapeListing<'_, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut section = usize::MAX;
         for (number, instruction) in self.0.instructions.iter().enumerate() {
-            let Line { section: name, operation, destination, sources } =
+            let ListingLine { section: name, operation, destination, sources } =
                 line(self.0.sections[instruction.section], instruction);
             if instruction.section != section {
                 section = instruction.section;

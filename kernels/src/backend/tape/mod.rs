@@ -12,8 +12,9 @@ mod recorder;
 mod register_file;
 
 pub use instruction::{
-    Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
+    ArrayReference, Effect, Indices, Instruction, Number, Operand, PredicateInstruction, RegisterKind,
+    RegisterName, TapeAction,
 };
-pub use listing::{Line, Listing};
-pub use outline::{Outline, Outlines, Place, register_shape};
+pub use listing::{ListingLine, TapeListing};
+pub use outline::{Outline, Outlines, VectorLocation, register_shape};
 pub use recorded::Tape;

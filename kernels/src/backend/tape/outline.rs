@@ -1,8 +1,8 @@
 //! Outlines of instructions for timing models: the unit, sources and destination, without values.
 
-use super::instruction::{File, Instruction, Operand, Reference, RegisterName};
+use super::instruction::{ArrayReference, Instruction, Operand, RegisterKind, RegisterName};
 use super::recorded::Tape;
-use crate::backend::dispatch::{InstructionSet, Task, dispatch};
+use crate::backend::dispatch::{InstructionSet, RegisterTask, dispatch};
 use crate::backend::precision::Precision;
 use crate::backend::registers::Registers;
 use crate::isa::{Element, Op, ProgramError, Storage, Vector};
@@ -10,13 +10,13 @@ use std::cell::Cell;
 
 /// Location of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum VectorLocation {
     /// In a vector register.
     Register(RegisterName),
     /// In an array, consecutive elements.
-    Memory(Reference),
+    Memory(ArrayReference),
     /// In an array, at the elements that an index vector numbers.
-    Indexed(Reference),
+    Indexed(ArrayReference),
 }
 
 /// A vector instruction without its values.
@@ -27,9 +27,9 @@ pub struct Outline {
     /// True if numbers change their precision on the way (counted also as [`Op::Widen`]).
     pub converts: bool,
     /// Vectors that it reads, without scalar operands.
-    pub reads: Vec<Place>,
+    pub reads: Vec<VectorLocation>,
     /// Vector that it writes; a population count writes none.
-    pub writes: Option<Place>,
+    pub writes: Option<VectorLocation>,
 }
 
 impl Outline {
@@ -41,9 +41,11 @@ impl Outline {
     /// Name under which a pass is timed: the mnemonic, with `.index` if it moves entries of an index vector, and `.convert` if
     /// numbers change their precision.
     pub fn kind(&self) -> String {
-        let moves = |place: &Place| match place {
-            Place::Memory(reference) | Place::Indexed(reference) => reference.element == u32::NAME,
-            Place::Register(_) => false,
+        let moves = |place: &VectorLocation| match place {
+            VectorLocation::Memory(reference) | VectorLocation::Indexed(reference) => {
+                reference.element == u32::NAME
+            }
+            VectorLocation::Register(_) => false,
         };
         let index = if self.reads.iter().chain(&self.writes).any(moves) { ".index" } else { "" };
         let convert = if self.converts { ".convert" } else { "" };
@@ -55,13 +57,13 @@ impl Outline {
         let mut copy = *instruction;
         copy.operands(|operand| {
             if let Operand::Memory(reference) = operand {
-                reads.push(Place::Memory(*reference));
+                reads.push(VectorLocation::Memory(*reference));
             }
         });
-        copy.reads(|name| reads.push(Place::Register(*name)));
-        let place = if instruction.is_indexed() { Place::Indexed } else { Place::Memory };
+        copy.reads(|name| reads.push(VectorLocation::Register(*name)));
+        let place = if instruction.is_indexed() { VectorLocation::Indexed } else { VectorLocation::Memory };
         let memory = instruction.reference().map(place);
-        let result = instruction.to().map(Place::Register);
+        let result = instruction.to().map(VectorLocation::Register);
         if result.is_some() {
             reads.extend(memory);
         }
@@ -84,7 +86,7 @@ pub struct Outlines {
     /// Passes that execute them here: loads become operands of their readers if the array keeps its contents.
     pub passes: Vec<Outline>,
     /// Registers of each file that the passes need at once, in the order of [`File::ALL`].
-    pub registers: [usize; File::ALL.len()],
+    pub registers: [usize; RegisterKind::ALL.len()],
 }
 
 impl<L: Element> Tape<L> {
@@ -105,16 +107,16 @@ impl<L: Element> Tape<L> {
 /// [`ProgramError::NoSuchInstructionSet`] if this processor lacks it.
 pub fn register_shape<L: Precision>(
     set: InstructionSet,
-) -> Result<([f64; File::ALL.len()], usize), ProgramError> {
+) -> Result<([f64; RegisterKind::ALL.len()], usize), ProgramError> {
     let shape = Cell::new(Default::default());
-    dispatch::<L, _>(set, Shape(&shape))?;
+    dispatch::<L, _>(set, RegisterShapeTask(&shape))?;
     Ok(shape.get())
 }
 
 /// Task that looks up the sizes of a register file.
-struct Shape<'c>(&'c Cell<([f64; File::ALL.len()], usize)>);
+struct RegisterShapeTask<'c>(&'c Cell<([f64; RegisterKind::ALL.len()], usize)>);
 
-impl<L: Precision> Task<L> for Shape<'_> {
+impl<L: Precision> RegisterTask<L> for RegisterShapeTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, _: R) {
         let sizes = [size_of::<R::V>(), size_of::<<R::V as Vector>::Predicate>(), size_of::<R::Index>()];

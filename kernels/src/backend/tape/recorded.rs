@@ -2,9 +2,9 @@
 
 use super::allocation::{FileSizes, allocate};
 use super::folding::fold_loads;
-use super::instruction::{File, Instruction};
-use super::recorder::{Recorder, Recording};
-use crate::isa::{Element, Footprint, OpCounts, Text};
+use super::instruction::{Instruction, RegisterKind};
+use super::recorder::{Recording, TapeRecorder};
+use crate::isa::{Element, Footprint, Kernel, OpCounts};
 
 /// A recorded kernel: straight-line vector instructions with registers, and the passes that execute them.
 #[derive(Clone, Debug)]
@@ -18,8 +18,8 @@ pub struct Tape<L> {
 
 impl<L: Element> Tape<L> {
     /// Records `text` by running it once on a machine that computes nothing.
-    pub fn record<T: Text<Lane = L>>(text: &T) -> Self {
-        let recorder = Recorder::new();
+    pub fn record<T: Kernel<Lane = L>>(text: &T) -> Self {
+        let recorder = TapeRecorder::new();
         text.body(Recording(&recorder));
         let mut instructions = recorder.instructions.into_inner();
         let mut passes = fold_loads(&instructions);
@@ -41,7 +41,7 @@ impl<L: Element> Tape<L> {
     }
 
     /// Registers of a file that the kernel needs at once.
-    pub fn registers(&self, file: File) -> usize {
+    pub fn registers(&self, file: RegisterKind) -> usize {
         self.sizes[file as usize]
     }
 

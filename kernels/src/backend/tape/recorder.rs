@@ -1,25 +1,26 @@
 //! Recording machine: every operation of a kernel becomes an instruction on a tape.
 
 use super::instruction::{
-    Action, Effect, File, Indices, Instruction, Number, Operand, Reference, RegisterName, Truth,
+    ArrayReference, Effect, Indices, Instruction, Number, Operand, PredicateInstruction, RegisterKind,
+    RegisterName, TapeAction,
 };
 use crate::backend::values::{implement_operator, implement_predicate, implement_vector};
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
-use crate::isa::{Counter, Element, Machine, Predicate, Slot, Storage, Vector};
+use crate::isa::{Element, LaneCounter, Machine, Predicate, Slot, Storage, Vector};
 use std::cell::{Cell, RefCell};
 
 /// Collects instructions while a kernel runs on it; every result gets a register of its own.
-pub(super) struct Recorder<L> {
+pub(super) struct TapeRecorder<L> {
     pub(super) instructions: RefCell<Vec<Instruction<L>>>,
     pub(super) sections: RefCell<Vec<&'static str>>,
     section: Cell<usize>,
     registers: Cell<u32>,
 }
 
-impl<L: Element> Recorder<L> {
+impl<L: Element> TapeRecorder<L> {
     pub(super) fn new() -> Self {
-        Recorder {
+        TapeRecorder {
             instructions: RefCell::default(),
             sections: RefCell::new(vec!["body"]),
             section: Cell::new(0),
@@ -27,57 +28,57 @@ impl<L: Element> Recorder<L> {
         }
     }
 
-    fn push(&self, action: Action<L>) {
+    fn push(&self, action: TapeAction<L>) {
         let section = self.section.get();
         self.instructions.borrow_mut().push(Instruction { section, action });
     }
 
     /// Returns a register that has not been written yet.
-    fn register(&self, file: File) -> RegisterName {
+    fn register(&self, file: RegisterKind) -> RegisterName {
         let number = self.registers.get();
         self.registers.set(number + 1);
         RegisterName { file, number }
     }
 
-    fn number(&self, number: Number<L>) -> Value<'_, L> {
-        let to = self.register(File::Number);
-        self.push(Action::Number(to, number));
-        Value { recorder: self, operand: Operand::Register(to) }
+    fn number(&self, number: Number<L>) -> RecordedValue<'_, L> {
+        let to = self.register(RegisterKind::Number);
+        self.push(TapeAction::Number(to, number));
+        RecordedValue { recorder: self, operand: Operand::Register(to) }
     }
 
-    fn truth(&self, truth: Truth<L>) -> TruthValue<'_, L> {
-        let register = self.register(File::Predicate);
-        self.push(Action::Truth(register, truth));
-        TruthValue { recorder: self, register }
+    fn truth(&self, truth: PredicateInstruction<L>) -> RecordedPredicate<'_, L> {
+        let register = self.register(RegisterKind::Predicate);
+        self.push(TapeAction::Truth(register, truth));
+        RecordedPredicate { recorder: self, register }
     }
 
     fn indices(&self, indices: Indices<L>) -> RegisterName {
-        let to = self.register(File::Index);
-        self.push(Action::Indices(to, indices));
+        let to = self.register(RegisterKind::Index);
+        self.push(TapeAction::Indices(to, indices));
         to
     }
 }
 
 /// A vector of numbers during recording: a register, or a known number.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'t, L> {
-    recorder: &'t Recorder<L>,
+pub(super) struct RecordedValue<'t, L> {
+    recorder: &'t TapeRecorder<L>,
     operand: Operand<L>,
 }
 
 /// A predicate during recording.
 #[derive(Clone, Copy)]
-pub(super) struct TruthValue<'t, L> {
-    recorder: &'t Recorder<L>,
+pub(super) struct RecordedPredicate<'t, L> {
+    recorder: &'t TapeRecorder<L>,
     register: RegisterName,
 }
 
-impl<L: Element> Value<'_, L> {
+impl<L: Element> RecordedValue<'_, L> {
     /// Evaluates arithmetic between scalar operands at once: no vector machine would spend an instruction on it.
     fn binary(self, op: BinaryOp, other: Self) -> Self {
         match (self.operand, other.operand) {
             (Operand::Uniform(a), Operand::Uniform(b)) => {
-                Value { operand: Operand::Uniform(op.apply(a, b)), ..self }
+                RecordedValue { operand: Operand::Uniform(op.apply(a, b)), ..self }
             }
             (a, b) => self.recorder.number(Number::Binary(op, a, b)),
         }
@@ -85,7 +86,7 @@ impl<L: Element> Value<'_, L> {
 
     fn unary(self, op: UnaryOp) -> Self {
         match self.operand {
-            Operand::Uniform(a) => Value { operand: Operand::Uniform(op.apply(a)), ..self },
+            Operand::Uniform(a) => RecordedValue { operand: Operand::Uniform(op.apply(a)), ..self },
             a => self.recorder.number(Number::Unary(op, a)),
         }
     }
@@ -103,32 +104,32 @@ macro_rules! recorded {
         $a.binary(BinaryOp::$op, $b)
     };
     (() P compare $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
-        $a.recorder.truth(Truth::Compare(CompareOp::$op, $a.operand, $b.operand))
+        $a.recorder.truth(PredicateInstruction::Compare(CompareOp::$op, $a.operand, $b.operand))
     };
     (() P connective $op:ident $f:ident ($a:ident $b:ident) $result:tt) => {
-        $a.recorder.truth(Truth::Connective(ConnectiveOp::$op, $a.register, $b.register))
+        $a.recorder.truth(PredicateInstruction::Connective(ConnectiveOp::$op, $a.register, $b.register))
     };
     (() P negation $op:ident $f:ident ($a:ident) $result:tt) => {
-        $a.recorder.truth(Truth::Negation(NegationOp::$op, $a.register))
+        $a.recorder.truth(PredicateInstruction::Negation(NegationOp::$op, $a.register))
     };
 }
-for_each_op!(each implement_operator (['t, L: Element] Value<'t, L>, recorded ()));
+for_each_op!(each implement_operator (['t, L: Element] RecordedValue<'t, L>, recorded ()));
 
-impl<'t, L: Element> Vector for Value<'t, L> {
-    type Predicate = TruthValue<'t, L>;
+impl<'t, L: Element> Vector for RecordedValue<'t, L> {
+    type Predicate = RecordedPredicate<'t, L>;
     for_each_op!(each implement_vector (recorded ()));
 }
 
-impl<L: Element> Predicate for TruthValue<'_, L> {
+impl<L: Element> Predicate for RecordedPredicate<'_, L> {
     for_each_op!(each implement_predicate (recorded ()));
 }
 
 /// Handle of the recording machine.
 #[derive(Clone, Copy)]
-pub(super) struct Recording<'t, L>(pub(super) &'t Recorder<L>);
+pub(super) struct Recording<'t, L>(pub(super) &'t TapeRecorder<L>);
 
-fn reference<T: Storage>(slot: Slot<T>, shift: isize) -> Reference {
-    Reference { array: slot.array(), element: T::NAME, shift }
+fn reference<T: Storage>(slot: Slot<T>, shift: isize) -> ArrayReference {
+    ArrayReference { array: slot.array(), element: T::NAME, shift }
 }
 
 /// Converts an operand to its form on a tape, by its kind.
@@ -156,20 +157,20 @@ macro_rules! record {
 macro_rules! push {
     (Number $recorder:expr, $number:expr) => { $recorder.number($number) };
     (Indices $recorder:expr, $indices:expr) => { $recorder.indices($indices) };
-    (Effect $recorder:expr, $effect:expr) => { $recorder.push(Action::Effect($effect)) };
+    (Effect $recorder:expr, $effect:expr) => { $recorder.push(TapeAction::Effect($effect)) };
 }
 
 impl<'t, L: Element> Machine for Recording<'t, L> {
     type Lane = L;
-    type V = Value<'t, L>;
-    type P = TruthValue<'t, L>;
+    type V = RecordedValue<'t, L>;
+    type P = RecordedPredicate<'t, L>;
     type I = RegisterName;
 
-    fn uniform(self, value: f64) -> Value<'t, L> {
-        Value { recorder: self.0, operand: Operand::Uniform(L::from_f64(value)) }
+    fn uniform(self, value: f64) -> RecordedValue<'t, L> {
+        RecordedValue { recorder: self.0, operand: Operand::Uniform(L::from_f64(value)) }
     }
     for_each_op!(each_instruction record self);
-    fn none(self, _: TruthValue<'t, L>) -> bool {
+    fn none(self, _: RecordedPredicate<'t, L>) -> bool {
         // A tape is straight-line: it contains every operation, as the CRAY executed them.
         false
     }

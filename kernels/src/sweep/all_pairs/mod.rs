@@ -24,11 +24,11 @@ mod tile;
 use crate::backend::{GROUP, InstructionSet, Precision, dispatch_estimating, dispatch_native};
 use crate::isa::ProgramError;
 use crate::isa::Storage;
-use crate::law::{self, Field, Law};
+use crate::law::{self, Law, ParticleField};
 use crate::threads::{alone_if, on_threads, pieces};
 use std::array::from_fn;
 use std::ops::Range;
-use tile::{Rows, Tile, asks_for_velocity};
+use tile::{BandRows, Tile, asks_for_velocity};
 
 /// Largest number of bands: a constant, because the order of summation depends on it.
 pub const BANDS: usize = 32;
@@ -61,7 +61,7 @@ pub enum Arithmetic {
 /// Columns of the bodies, each of [`padded`] length. Entries behind the last body have no mass; padding entry n has the x
 /// coordinate [`padding`] of n.
 #[derive(Clone, Copy, Debug)]
-pub struct Bodies<'a, P> {
+pub struct BodyColumns<'a, P> {
     /// Positions (length).
     pub position: [&'a [P]; 3],
     /// Rounding residue of the positions in single precision (length); empty and unread in double precision.
@@ -74,7 +74,7 @@ pub struct Bodies<'a, P> {
 
 /// Options of a sweep.
 #[derive(Clone, Copy)]
-pub struct Manner<'a> {
+pub struct AllPairsOptions<'a> {
     /// True to sum up energy and virial.
     pub observed: bool,
     /// Evaluation of products, sums and roots.
@@ -103,7 +103,7 @@ pub fn padding<P: Precision>(n: usize) -> P {
 
 /// A band of rows and its sums.
 #[derive(Clone, Debug)]
-struct Band<P, const SUMS: usize> {
+struct TriangleBand<P, const SUMS: usize> {
     groups: Range<usize>,
     /// For each sum, one entry per body from the band's first on.
     sums: [Vec<P>; SUMS],
@@ -117,7 +117,7 @@ struct Band<P, const SUMS: usize> {
 #[derive(Clone, Debug)]
 pub struct AllPairs<P, const SUMS: usize = 3> {
     groups: usize,
-    bands: Vec<Band<P, SUMS>>,
+    bands: Vec<TriangleBand<P, SUMS>>,
 }
 
 impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
@@ -127,7 +127,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
         let band = |rows: Range<usize>| {
             let behind = (groups - rows.start) * GROUP;
-            Band {
+            TriangleBand {
                 groups: rows,
                 sums: from_fn(|_| vec![P::default(); behind]),
                 energy: [0.0; 2],
@@ -153,9 +153,9 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     pub fn sweep<L: Law<3> + Sync>(
         &mut self,
         law: &L,
-        bodies: &Bodies<'_, P>,
+        bodies: &BodyColumns<'_, P>,
         sums: [&mut [P]; SUMS],
-        manner: &Manner<'_>,
+        manner: &AllPairsOptions<'_>,
     ) -> Result<[f64; 2], ProgramError> {
         self.meet(law, bodies, 0..self.bands.len(), manner)?;
         self.finish(sums)
@@ -170,14 +170,14 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     /// Sums of a band, each with one entry per body from the band's first on, and its energy and virial.
     #[inline]
     pub fn band(&self, number: usize) -> (&[Vec<P>; SUMS], [f64; 2]) {
-        let Band { sums, energy, .. } = &self.bands[number];
+        let TriangleBand { sums, energy, .. } = &self.bands[number];
         (sums, *energy)
     }
 
     /// Mutable sums of a band, for results computed elsewhere.
     #[inline]
     pub fn band_mut(&mut self, number: usize) -> (&mut [Vec<P>; SUMS], &mut [f64; 2]) {
-        let Band { sums, energy, .. } = &mut self.bands[number];
+        let TriangleBand { sums, energy, .. } = &mut self.bands[number];
         (sums, energy)
     }
 
@@ -188,12 +188,13 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     pub fn meet<L: Law<3> + Sync>(
         &mut self,
         law: &L,
-        bodies: &Bodies<'_, P>,
+        bodies: &BodyColumns<'_, P>,
         bands: Range<usize>,
-        manner: &Manner<'_>,
+        manner: &AllPairsOptions<'_>,
     ) -> Result<(), ProgramError> {
         law::check::<3, L>(law)?;
-        let served = |field: &&Field| matches!(field, Field::Mass | Field::Velocity(_));
+        let served =
+            |field: &&ParticleField| matches!(field, ParticleField::Mass | ParticleField::Velocity(_));
         if let Some(field) = L::FIELDS.iter().find(|field| !served(field)) {
             return Err(ProgramError::Unstated(field.name()));
         }
@@ -211,18 +212,18 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     fn meet_checked<L: Law<3> + Sync>(
         &mut self,
         law: &L,
-        bodies: &Bodies<'_, P>,
+        bodies: &BodyColumns<'_, P>,
         bands: Range<usize>,
-        manner: &Manner<'_>,
+        manner: &AllPairsOptions<'_>,
     ) -> Result<(), ProgramError> {
-        let &Manner { observed, arithmetic, set, interrupted } = manner;
+        let &AllPairsOptions { observed, arithmetic, set, interrupted } = manner;
         let bands = &mut self.bands[bands];
         let done = on_threads(bands.iter_mut(), |band| {
             band.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
             (band.energy, band.is_stopped) = ([0.0; 2], false);
             let sums = band.sums.each_mut().map(Vec::as_mut_slice);
             let (energy, is_stopped) = (&mut band.energy, &mut band.is_stopped);
-            let work = Rows {
+            let work = BandRows {
                 law,
                 bodies,
                 groups: band.groups.clone(),

@@ -1,8 +1,8 @@
 //! All pairs as whole-array operations: for every shift, each body is paired with the one that many positions behind it. PWP.
 
 use super::is_split;
-use crate::isa::{Array, Element, Machine, Slot, Text};
-use crate::law::{Env, Field, Law, Stated, Sum};
+use crate::isa::{Array, Element, Kernel, Machine, Slot};
+use crate::law::{Env, Law, ParticleField, ParticleSum, StatedEnv};
 use std::cell::Cell;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -32,12 +32,15 @@ impl<P: Element, L: Law<3>> Shifts<P, L> {
 /// # Panics
 /// If bodies have no such quantity.
 #[inline]
-pub const fn body_array(field: Field) -> Array {
+pub const fn body_array(field: ParticleField) -> Array {
     match field {
-        Field::Mass => Array::BodyMass,
-        Field::Velocity(axis) => [Array::BodyVx, Array::BodyVy, Array::BodyVz][axis as usize],
+        ParticleField::Mass => Array::BodyMass,
+        ParticleField::Velocity(axis) => [Array::BodyVx, Array::BodyVy, Array::BodyVz][axis as usize],
         #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
-        Field::Omega | Field::Radius | Field::InverseMass | Field::Occupied => {
+        ParticleField::Omega
+        | ParticleField::Radius
+        | ParticleField::InverseMass
+        | ParticleField::Occupied => {
             panic!("bodies have no such quantity")
         }
     }
@@ -48,12 +51,12 @@ pub const fn body_array(field: Field) -> Array {
 /// # Panics
 /// If bodies have no such sum.
 #[inline]
-pub const fn body_sum_array(sum: Sum) -> Array {
+pub const fn body_sum_array(sum: ParticleSum) -> Array {
     match sum {
-        Sum::Force(axis) => [Array::BodyFx, Array::BodyFy, Array::BodyFz][axis as usize],
-        Sum::ForceRate(axis) => [Array::BodyRateX, Array::BodyRateY, Array::BodyRateZ][axis as usize],
+        ParticleSum::Force(axis) => [Array::BodyFx, Array::BodyFy, Array::BodyFz][axis as usize],
+        ParticleSum::ForceRate(axis) => [Array::BodyRateX, Array::BodyRateY, Array::BodyRateZ][axis as usize],
         #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
-        Sum::Torque => panic!("bodies have no torque"),
+        ParticleSum::Torque => panic!("bodies have no torque"),
     }
 }
 
@@ -64,14 +67,14 @@ pub const BODY_POSITION: [Array; 3] = [Array::BodyX, Array::BodyY, Array::BodyZ]
 pub const BODY_REST: [Array; 3] = [Array::BodyRestX, Array::BodyRestY, Array::BodyRestZ];
 
 /// Environment of a law that evaluates one strip of bodies.
-struct Behind<M: Machine> {
+struct ShiftEnv<M: Machine> {
     machine: M,
     /// Rounding residue of the own positions; zero in double precision.
     own_rest: [M::V; 3],
     sums: [Cell<M::V>; 6],
 }
 
-impl<M: Machine> Env<3> for &Behind<M> {
+impl<M: Machine> Env<3> for &ShiftEnv<M> {
     type V = M::V;
     type Place = isize;
     const BOTH_PARTNERS: bool = false;
@@ -82,7 +85,7 @@ impl<M: Machine> Env<3> for &Behind<M> {
     }
 
     #[inline(always)]
-    fn own(self, field: Field) -> M::V {
+    fn own(self, field: ParticleField) -> M::V {
         self.machine.load(Slot::<M::Lane>::new(body_array(field)))
     }
 
@@ -99,7 +102,7 @@ impl<M: Machine> Env<3> for &Behind<M> {
     }
 
     #[inline(always)]
-    fn partner(self, field: Field, shift: isize) -> M::V {
+    fn partner(self, field: ParticleField, shift: isize) -> M::V {
         self.machine.load_shifted(Slot::<M::Lane>::new(body_array(field)), shift)
     }
 
@@ -114,14 +117,14 @@ impl<M: Machine> Env<3> for &Behind<M> {
     }
 
     #[inline(always)]
-    fn own_add(self, sum: Sum, value: M::V) {
+    fn own_add(self, sum: ParticleSum, value: M::V) {
         let cell = &self.sums[sum.column::<3>()];
         cell.set(cell.get() + value);
     }
 
     #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
-    fn partner_sub(self, _: Sum, _: isize, _: M::V) {
+    fn partner_sub(self, _: ParticleSum, _: isize, _: M::V) {
         unreachable!("every pair is visited from both sides")
     }
 
@@ -159,7 +162,7 @@ impl<M: Machine> Env<3> for &Behind<M> {
 }
 
 // SAFETY: slots and shifts depend on the law and the shifts only.
-unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
+unsafe impl<P: Element, L: Law<3>> Kernel for Shifts<P, L> {
     type Lane = P;
 
     #[inline(always)]
@@ -170,8 +173,8 @@ unsafe impl<P: Element, L: Law<3>> Text for Shifts<P, L> {
             true => BODY_REST.map(|axis| m.load(Slot::<P>::new(axis))),
             false => [zero; 3],
         };
-        let behind = Behind::<M> { machine: m, own_rest, sums: std::array::from_fn(|_| Cell::new(zero)) };
-        let env = Stated::new(&behind, &self.law);
+        let behind = ShiftEnv::<M> { machine: m, own_rest, sums: std::array::from_fn(|_| Cell::new(zero)) };
+        let env = StatedEnv::new(&behind, &self.law);
         let own = self.law.own(env);
         for shift in self.shifts.clone() {
             self.law.pair(env, shift as isize, &own);

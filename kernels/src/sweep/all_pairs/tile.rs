@@ -1,9 +1,9 @@
 //! Evaluation of a band of rows in registers.
 
-use super::{Bodies, is_split};
-use crate::backend::{GROUP, Precision, Registers, Task};
+use super::{BodyColumns, is_split};
+use crate::backend::{GROUP, Precision, RegisterTask, Registers};
 use crate::isa::{Element, Vector};
-use crate::law::{Env, Field, Law, Stated, Sum};
+use crate::law::{Env, Law, ParticleField, ParticleSum, StatedEnv};
 use std::array::from_fn;
 use std::cell::Cell;
 use std::ops::Range;
@@ -16,9 +16,9 @@ const OWN: usize = 4;
 const SPELL: usize = 64;
 
 /// A band of rows.
-pub(super) struct Rows<'a, P, L, const SUMS: usize> {
+pub(super) struct BandRows<'a, P, L, const SUMS: usize> {
     pub(super) law: &'a L,
-    pub(super) bodies: &'a Bodies<'a, P>,
+    pub(super) bodies: &'a BodyColumns<'a, P>,
     /// Rows.
     pub(super) groups: Range<usize>,
     /// Sums of all bodies from the first row's on.
@@ -33,14 +33,14 @@ pub(super) struct Rows<'a, P, L, const SUMS: usize> {
 }
 
 /// Task that evaluates a band of rows. If `EXACT`, own sums are kept in 16 lanes.
-pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool>(pub(super) Rows<'a, P, L, SUMS>);
+pub(super) struct Tile<'a, P, L, const SUMS: usize, const EXACT: bool>(pub(super) BandRows<'a, P, L, SUMS>);
 
 /// Sums of a body.
-type Sums<V, const SUMS: usize> = [Cell<V>; SUMS];
+type BodySums<V, const SUMS: usize> = [Cell<V>; SUMS];
 
 /// A register of partners.
 #[derive(Clone, Copy)]
-struct Partner<V> {
+struct PartnerBodies<V> {
     position: [V; 3],
     /// Rounding residue of the position; zero in double precision.
     rest: [V; 3],
@@ -50,25 +50,26 @@ struct Partner<V> {
 }
 
 /// Environment of a law that evaluates one register of pairs. `BOTH` is true if the pair is visited once.
-struct Meeting<'a, R: Registers, const SUMS: usize, const BOTH: bool> {
+struct TileEnv<'a, R: Registers, const SUMS: usize, const BOTH: bool> {
     registers: R,
-    own: Partner<R::V>,
-    own_sums: &'a Sums<R::V, SUMS>,
-    partner_sums: &'a Sums<R::V, SUMS>,
+    own: PartnerBodies<R::V>,
+    own_sums: &'a BodySums<R::V, SUMS>,
+    partner_sums: &'a BodySums<R::V, SUMS>,
     observed: bool,
     energy: &'a [Cell<R::V>; 2],
 }
 
-impl<R: Registers, const SUMS: usize, const BOTH: bool> Meeting<'_, R, SUMS, BOTH> {
+impl<R: Registers, const SUMS: usize, const BOTH: bool> TileEnv<'_, R, SUMS, BOTH> {
     /// A quantity of a body. Quantities that bodies do not have are zero; the sweep rejects a law that states one.
     #[inline(always)]
-    fn field(&self, of: &Partner<R::V>, field: Field) -> R::V {
+    fn field(&self, of: &PartnerBodies<R::V>, field: ParticleField) -> R::V {
         match field {
-            Field::Mass => of.mass,
-            Field::Velocity(axis) => of.velocity[axis as usize],
-            Field::Omega | Field::Radius | Field::InverseMass | Field::Occupied => {
-                self.registers.splat(R::Lane::default())
-            }
+            ParticleField::Mass => of.mass,
+            ParticleField::Velocity(axis) => of.velocity[axis as usize],
+            ParticleField::Omega
+            | ParticleField::Radius
+            | ParticleField::InverseMass
+            | ParticleField::Occupied => self.registers.splat(R::Lane::default()),
         }
     }
 
@@ -78,9 +79,9 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Meeting<'_, R, SUMS, BOT
     }
 }
 
-impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, R, SUMS, BOTH> {
+impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &TileEnv<'_, R, SUMS, BOTH> {
     type V = R::V;
-    type Place = Partner<R::V>;
+    type Place = PartnerBodies<R::V>;
     const BOTH_PARTNERS: bool = BOTH;
 
     #[inline(always)]
@@ -88,18 +89,18 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, 
         self.own.position
     }
     #[inline(always)]
-    fn own(self, field: Field) -> R::V {
+    fn own(self, field: ParticleField) -> R::V {
         self.field(&self.own, field)
     }
     #[inline(always)]
-    fn displacement(self, own: [R::V; 3], place: Partner<R::V>) -> [R::V; 3] {
+    fn displacement(self, own: [R::V; 3], place: PartnerBodies<R::V>) -> [R::V; 3] {
         from_fn(|axis| {
             let far = own[axis] - place.position[axis];
             if const { is_split::<R::Lane>() } { far + (self.own.rest[axis] - place.rest[axis]) } else { far }
         })
     }
     #[inline(always)]
-    fn partner(self, field: Field, place: Partner<R::V>) -> R::V {
+    fn partner(self, field: ParticleField, place: PartnerBodies<R::V>) -> R::V {
         self.field(&place, field)
     }
     #[inline(always)]
@@ -111,16 +112,16 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, 
         self.registers.none(predicate)
     }
     #[inline(always)]
-    fn own_add(self, sum: Sum, value: R::V) {
+    fn own_add(self, sum: ParticleSum, value: R::V) {
         self.add(&self.own_sums[sum.column::<3>()], value);
     }
     #[inline(always)]
-    fn partner_sub(self, sum: Sum, _: Partner<R::V>, value: R::V) {
+    fn partner_sub(self, sum: ParticleSum, _: PartnerBodies<R::V>, value: R::V) {
         let to = &self.partner_sums[sum.column::<3>()];
         to.set(to.get() - value);
     }
     #[inline(always)]
-    fn add_product(self, sum: Sum, _: Partner<R::V>, a: R::V, b: R::V) {
+    fn add_product(self, sum: ParticleSum, _: PartnerBodies<R::V>, a: R::V, b: R::V) {
         let to = &self.own_sums[sum.column::<3>()];
         to.set(a.times_plus(b, to.get()));
         if BOTH {
@@ -156,7 +157,9 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &Meeting<'_, 
     fn section(self, _: &'static str) {}
 }
 
-impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Task<P> for Tile<'_, P, L, SUMS, EXACT> {
+impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> RegisterTask<P>
+    for Tile<'_, P, L, SUMS, EXACT>
+{
     #[inline(always)]
     fn on<R: Registers<Lane = P>>(mut self, registers: R) {
         for group in self.0.groups.clone() {
@@ -175,18 +178,18 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
     /// Pairs `OWN` bodies of a group, from its `first` on, with those of the group and all behind it.
     #[inline(always)]
     fn row<R: Registers<Lane = P>>(&mut self, registers: R, group: usize, first: usize) {
-        let Rows { law, bodies, groups, sums, observed, energy: total, .. } = &mut self.0;
+        let BandRows { law, bodies, groups, sums, observed, energy: total, .. } = &mut self.0;
         let (law, bodies, observed) = (*law, *bodies, *observed);
         let (start, behind) = (group * GROUP, bodies.mass.len());
         // Sums of lane l of part p are those of logical lane p · LANES + l. Parts share their sums where bits may depend on the
         // registers.
         let kept = const { if EXACT { GROUP / R::LANES } else { 1 } };
         let zero = registers.splat(P::default());
-        let own_sums: [[Sums<R::V, SUMS>; GROUP]; OWN] =
+        let own_sums: [[BodySums<R::V, SUMS>; GROUP]; OWN] =
             from_fn(|_| from_fn(|_| from_fn(|_| Cell::new(zero))));
-        let energies: [[Sums<R::V, 2>; GROUP]; 1] = [from_fn(|_| from_fn(|_| Cell::new(zero)))];
-        let nothing: Sums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
-        let own: [Partner<R::V>; OWN] = from_fn(|n| Self::own(registers, bodies, start + first + n));
+        let energies: [[BodySums<R::V, 2>; GROUP]; 1] = [from_fn(|_| from_fn(|_| Cell::new(zero)))];
+        let nothing: BodySums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
+        let own: [PartnerBodies<R::V>; OWN] = from_fn(|n| Self::own(registers, bodies, start + first + n));
         for part in 0..GROUP / R::LANES {
             let at = start + part * R::LANES;
             // SAFETY: the group's entries exist, and a part is one register of them.
@@ -194,7 +197,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             for (n, own) in own.into_iter().enumerate() {
                 let (own, partner) = apart(registers, own, partner, (start + first + n).wrapping_sub(at));
                 let own_sums = &own_sums[n][part % kept];
-                let meeting = Meeting::<R, SUMS, false> {
+                let meeting = TileEnv::<R, SUMS, false> {
                     registers,
                     own,
                     own_sums,
@@ -224,11 +227,11 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                 let partner = unsafe { Self::partner(registers, bodies, at) };
                 // SAFETY: sums have an entry for every body from `base` on.
                 let to: [*mut P; SUMS] = from_fn(|sum| unsafe { sums[sum].as_mut_ptr().add(at - base) });
-                let partner_sums: Sums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
+                let partner_sums: BodySums<R::V, SUMS> = from_fn(|_| Cell::new(zero));
                 for (n, own) in own.into_iter().enumerate() {
                     let own_sums = &own_sums[n][part % kept];
                     let partner_sums = &partner_sums;
-                    let meeting = Meeting::<R, SUMS, true> {
+                    let meeting = TileEnv::<R, SUMS, true> {
                         registers,
                         own,
                         own_sums,
@@ -260,7 +263,11 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
 
     /// Broadcasts a body to every lane.
     #[inline(always)]
-    fn own<R: Registers<Lane = P>>(registers: R, bodies: &Bodies<'_, P>, body: usize) -> Partner<R::V> {
+    fn own<R: Registers<Lane = P>>(
+        registers: R,
+        bodies: &BodyColumns<'_, P>,
+        body: usize,
+    ) -> PartnerBodies<R::V> {
         Self::body(registers, bodies, |column| registers.splat(column[body]))
     }
 
@@ -271,9 +278,9 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
     #[inline(always)]
     unsafe fn partner<R: Registers<Lane = P>>(
         registers: R,
-        bodies: &Bodies<'_, P>,
+        bodies: &BodyColumns<'_, P>,
         at: usize,
-    ) -> Partner<R::V> {
+    ) -> PartnerBodies<R::V> {
         // SAFETY: the caller promises the bodies, and all columns that the law reads have as many entries (checked by
         // AllPairs::sweep).
         Self::body(registers, bodies, |column| unsafe { registers.load(column.as_ptr().add(at)) })
@@ -283,9 +290,9 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
     #[inline(always)]
     fn body<R: Registers<Lane = P>>(
         registers: R,
-        bodies: &Bodies<'_, P>,
+        bodies: &BodyColumns<'_, P>,
         of: impl Fn(&[P]) -> R::V,
-    ) -> Partner<R::V> {
+    ) -> PartnerBodies<R::V> {
         let velocity = match const { asks_for_velocity(L::FIELDS) } {
             true => bodies.velocity.map(&of),
             false => [registers.splat(P::default()); 3],
@@ -294,15 +301,15 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             true => bodies.rest.map(&of),
             false => [registers.splat(P::default()); 3],
         };
-        Partner { position: bodies.position.map(&of), rest, velocity, mass: of(bodies.mass) }
+        PartnerBodies { position: bodies.position.map(&of), rest, velocity, mass: of(bodies.mass) }
     }
 }
 
 /// True if a law that states these fields reads velocities.
-pub(super) const fn asks_for_velocity(fields: &[Field]) -> bool {
+pub(super) const fn asks_for_velocity(fields: &[ParticleField]) -> bool {
     let mut i = 0;
     while i < fields.len() {
-        if matches!(fields[i], Field::Velocity(_)) {
+        if matches!(fields[i], ParticleField::Velocity(_)) {
             return true;
         }
         i += 1;
@@ -314,10 +321,10 @@ pub(super) const fn asks_for_velocity(fields: &[Field]) -> bool {
 #[inline(always)]
 fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
     law: &L,
-    meeting: &Meeting<'_, R, SUMS, BOTH>,
-    partner: Partner<R::V>,
+    meeting: &TileEnv<'_, R, SUMS, BOTH>,
+    partner: PartnerBodies<R::V>,
 ) {
-    let env = Stated::new(meeting, law);
+    let env = StatedEnv::new(meeting, law);
     let own = law.own(env);
     law.pair(env, partner, &own);
 }
@@ -327,10 +334,10 @@ fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
 #[inline(always)]
 fn apart<R: Registers>(
     registers: R,
-    own: Partner<R::V>,
-    partner: Partner<R::V>,
+    own: PartnerBodies<R::V>,
+    partner: PartnerBodies<R::V>,
     lane: usize,
-) -> (Partner<R::V>, Partner<R::V>) {
+) -> (PartnerBodies<R::V>, PartnerBodies<R::V>) {
     if lane >= R::LANES {
         return (own, partner);
     }
@@ -341,19 +348,19 @@ fn apart<R: Registers>(
     let zero = registers.splat(R::Lane::default());
     let is_own = zero.less_than(one_at_own);
     // Both x coordinates are replaced: adding 1 to the body's own would be lost where floating-point numbers are coarser than 1.
-    let along_x = |instead: R::V, of: Partner<R::V>| {
+    let along_x = |instead: R::V, of: PartnerBodies<R::V>| {
         let [x, y, z] = of.position;
-        Partner { position: [R::V::select(is_own, instead, x), y, z], ..of }
+        PartnerBodies { position: [R::V::select(is_own, instead, x), y, z], ..of }
     };
     let mass = R::V::select(is_own, zero, partner.mass);
-    (along_x(zero, own), Partner { mass, ..along_x(one_at_own, partner) })
+    (along_x(zero, own), PartnerBodies { mass, ..along_x(one_at_own, partner) })
 }
 
 /// Adds the sums in the registers to `into` and sets them to zero.
 #[inline(always)]
 fn take<R: Registers, const SUMS: usize, const BODIES: usize>(
     registers: R,
-    own_sums: &[[Sums<R::V, SUMS>; GROUP]; BODIES],
+    own_sums: &[[BodySums<R::V, SUMS>; GROUP]; BODIES],
     kept: usize,
     into: &mut [[f64; SUMS]; BODIES],
 ) {

@@ -21,10 +21,10 @@
 
 use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
-use crate::backend::{Task, dispatch_native};
+use crate::backend::{RegisterTask, dispatch_native};
 use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, same};
-use crate::noise::{self, NoiseSource, Purpose};
+use crate::noise::{self, NoiseSource, RandomPurpose};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -37,7 +37,7 @@ const BAND: usize = 1024;
 
 /// Equation of motion and its integration: scheme, time step, inertia, gravity, noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<C> {
+pub struct EquationOfMotion<C> {
     /// The scheme.
     pub scheme: C,
     /// Time step (time).
@@ -66,18 +66,18 @@ pub enum DisplacementLimit<'a, S> {
 
 /// Discs reported by a pass.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Passed {
+pub struct PassReport {
     /// Discs beyond the limit or without a finite position, in order.
     pub left: Vec<u32>,
     /// Discs whose next step is longer than allowed or whose speed is not a number, in order.
     pub far: Vec<u32>,
 }
 
-impl Passed {
+impl PassReport {
     /// Joins these discs with those of a pass over later discs.
     #[must_use]
     #[inline]
-    pub fn and(mut self, behind: Passed) -> Passed {
+    pub fn and(mut self, behind: PassReport) -> PassReport {
         self.left.extend(behind.left);
         self.far.extend(behind.far);
         self
@@ -88,7 +88,7 @@ impl Passed {
 ///
 /// Only the lattice creates them. Every cell is an index into `places` and belongs to one disc or to none.
 #[derive(Debug)]
-pub struct Copies<'a> {
+pub struct PositionCopies<'a> {
     /// Index of each disc's copy.
     pub(super) cells: &'a [u32],
     /// The copies.
@@ -97,7 +97,7 @@ pub struct Copies<'a> {
     pub(super) unit: f64,
 }
 
-impl<C: Scheme> Motion<C> {
+impl<C: Scheme> EquationOfMotion<C> {
     /// Context of the scheme for one degree of freedom.
     #[inline(always)]
     fn context<R: Registers>(&self, registers: R, inverse: R::V, normal: R::V) -> Context<R> {
@@ -114,7 +114,7 @@ impl<C: Scheme> Motion<C> {
             Draws::InPredictor => step * u64::from(parts) + 1,
         };
         match parts {
-            1 => noise::draw(seed, Purpose::Thermostat, first, ids, to),
+            1 => noise::draw(seed, RandomPurpose::Thermostat, first, ids, to),
             _ => self.combine(first, ids, to),
         }
     }
@@ -127,7 +127,7 @@ impl<C: Scheme> Motion<C> {
             let mut sums = [0.0; 2];
             for (step, weight) in (first..).zip(&weights) {
                 let [mut a, mut b] = [[0.0]; 2];
-                noise::draw(self.noise.seed, Purpose::Thermostat, step, &[*id], [&mut a, &mut b]);
+                noise::draw(self.noise.seed, RandomPurpose::Thermostat, step, &[*id], [&mut a, &mut b]);
                 sums = [sums[0] + weight * a[0], sums[1] + weight * b[0]];
             }
             [*x, *y] = sums.map(S::from_f64);
@@ -163,7 +163,7 @@ impl<C: Scheme> Motion<C> {
 /// The order in which discs are moved changes no bit. Positions are relative to the cells. The pass sets the sums to zero.
 pub struct Advance<'a, S, P, C> {
     /// Equation of motion and its integration.
-    pub motion: &'a Motion<C>,
+    pub motion: &'a EquationOfMotion<C>,
     /// For each degree of freedom one column per carried derivative, with at least one entry per moving disc.
     pub state: Vec<Vec<&'a mut [S]>>,
     /// Force along x, force along y, torque: one column per degree of freedom.
@@ -193,9 +193,9 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
     pub fn run(
         mut self,
         limit: DisplacementLimit<'_, S>,
-        copies: Option<Copies<'_>>,
+        copies: Option<PositionCopies<'_>>,
         set: InstructionSet,
-    ) -> Result<Passed, ProgramError> {
+    ) -> Result<PassReport, ProgramError> {
         let Advance { motion, discs, corrected, longest_step, inverse, step, ids, .. } = self;
         let end = discs.end;
         assert!(C::DRAWS == Draws::Never || ids.len() >= end, "ids has no entry for some moving disc");
@@ -221,12 +221,12 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         }
         let copies_places = copies.is_some();
         let mut none = [[]; 2];
-        let Copies { cells, places, unit } = copies.unwrap_or_else(|| {
+        let PositionCopies { cells, places, unit } = copies.unwrap_or_else(|| {
             let [x, y] = &mut none;
-            Copies { cells: &[], places: [x, y], unit: 1.0 }
+            PositionCopies { cells: &[], places: [x, y], unit: 1.0 }
         });
         assert!(!copies_places || cells.len() >= end, "cells has no entry for some moving disc");
-        let arrays = Arrays {
+        let arrays = PassPointers {
             columns,
             sums,
             step,
@@ -240,8 +240,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         // Velocity in the units of the state at which a step has the greatest length allowed.
         let fastest = longest_step * (C::scales(motion.dt)[1] / motion.dt);
         let square = fastest * fastest;
-        let pass = |range: Range<usize>| -> Result<Passed, ProgramError> {
-            let mut passed = Passed::default();
+        let pass = |range: Range<usize>| -> Result<PassReport, ProgramError> {
+            let mut passed = PassReport::default();
             let (arrays, found) = (&arrays, &mut passed);
             match freedoms {
                 2 => dispatch_native(
@@ -255,7 +255,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             }?;
             Ok(passed)
         };
-        let mut all = Passed::default();
+        let mut all = PassReport::default();
         for passed in on_threads(pieces(discs, BAND), pass) {
             all = all.and(passed?);
         }
@@ -264,7 +264,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
 }
 
 /// Pointers to the arrays of a pass.
-struct Arrays<'a, S, P> {
+struct PassPointers<'a, S, P> {
     columns: [[*mut S; DERIVATIVES]; 3],
     sums: [*mut P; 3],
     step: u64,
@@ -279,21 +279,23 @@ struct Arrays<'a, S, P> {
 
 // SAFETY: passes over disjoint ranges touch different discs, and these have different cells. Discs in shared cells have a common
 // spare cell, which is stored to atomically and never read.
-unsafe impl<S: Send + Sync, P: Send> Sync for Arrays<'_, S, P> {}
+unsafe impl<S: Send + Sync, P: Send> Sync for PassPointers<'_, S, P> {}
 
 /// The pass over one range of discs.
 struct Pass<'a, S, P, C, const FREEDOMS: usize> {
-    motion: &'a Motion<C>,
-    arrays: &'a Arrays<'a, S, P>,
+    motion: &'a EquationOfMotion<C>,
+    arrays: &'a PassPointers<'a, S, P>,
     range: Range<usize>,
     corrected: bool,
     /// Square of the greatest velocity allowed, in the units of the state.
     square: f64,
     unit: f64,
-    passed: &'a mut Passed,
+    passed: &'a mut PassReport,
 }
 
-impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Task<S> for Pass<'_, S, P, C, FREEDOMS> {
+impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> RegisterTask<S>
+    for Pass<'_, S, P, C, FREEDOMS>
+{
     #[inline(always)]
     fn on<R: Registers<Lane = S>>(mut self, registers: R) {
         let Range { start: mut first, end } = self.range.clone();

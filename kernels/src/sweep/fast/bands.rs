@@ -23,32 +23,32 @@
 //! depend on the scene alone, so the order of every sum is the same on any number of threads. Partners of the last band beyond
 //! the last row are, on a periodic side, those of the first rows, which band A does not touch in stage 1.
 
-use super::contacts::{Discs, Evaluate, Notes, SumColumns};
-use super::finder::{Cursor, Finder, Rows, Share};
-use super::pairs::{Pairs, SENTINELS, Touches};
+use super::contacts::{BandNotes, DiscColumns, Evaluate, SumColumns};
+use super::finder::{Finder, RankShare, RowLayout, SearchCursor};
+use super::pairs::{PairBuffer, PairSequence, SENTINELS};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch_native;
 use crate::isa::{Element, ProgramError};
-use crate::law::{self, Asked, Law};
+use crate::law::{self, Law, ObservationRequest};
 use crate::threads::{in_stages, on_threads, pieces, threads};
 use std::ops::Range;
 
 /// Rows that one thread sweeps, with its buffers.
 #[derive(Clone, Debug)]
-struct Band<F> {
+struct RowBand<F> {
     /// Rows of the first stage, rows of the second, and rows whose extra pairs ([`Finder::find_beside`]) are found.
     rows: [Vec<Range<usize>>; 3],
     /// True if its notes belong to this rank.
     is_own: bool,
     found: F,
-    notes: Notes,
+    notes: BandNotes,
     pairs: u64,
 }
 
 /// Result of a sweep: numbers of pairs and contacts, energies, and pairs that need attention.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Met {
+pub struct SweepReport {
     /// Pairs the law was evaluated for, each once.
     pub pairs: u64,
     /// Pairs deeper than the watched depth.
@@ -64,12 +64,12 @@ pub struct Met {
     /// Deepest of these contacts (a fraction of the sum of the radii).
     pub deepest: f64,
     /// Contributions of the bands, whose sums are the totals above; lists of pairs are not split.
-    pub of_bands: Vec<OfBand>,
+    pub of_bands: Vec<BandReport>,
 }
 
 /// Totals of one band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct OfBand {
+pub struct BandReport {
     /// Pairs the law was evaluated for.
     pub pairs: u64,
     /// Power dissipated by the contacts (energy/time).
@@ -82,11 +82,11 @@ pub struct OfBand {
     pub deepest: f64,
 }
 
-impl Met {
+impl SweepReport {
     /// Adds up the bands in their order.
     #[inline]
-    pub fn of(of_bands: Vec<OfBand>) -> Met {
-        let mut met = Met::default();
+    pub fn of(of_bands: Vec<BandReport>) -> SweepReport {
+        let mut met = SweepReport::default();
         for band in &of_bands {
             met.pairs += band.pairs;
             met.dissipated += band.dissipated;
@@ -94,7 +94,7 @@ impl Met {
             met.contacts += band.contacts;
             met.deepest = met.deepest.max(band.deepest);
         }
-        Met { of_bands, ..met }
+        SweepReport { of_bands, ..met }
     }
 }
 
@@ -105,8 +105,8 @@ impl Met {
 /// add to one disc, and the order of every sum depends on the scene alone.
 #[derive(Clone, Debug)]
 pub struct Sweep<F> {
-    rows: Rows,
-    bands: Vec<Band<F>>,
+    rows: RowLayout,
+    bands: Vec<RowBand<F>>,
     /// Pairs that threads find in one band, in its order.
     parts: Vec<F>,
 }
@@ -125,7 +125,7 @@ fn is_cheaper_apart(tried: f64, bands: usize, threads: usize) -> bool {
 impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// Sweep over these rows.
     #[inline]
-    pub fn new(rows: Rows) -> Self {
+    pub fn new(rows: RowLayout) -> Self {
         Sweep::of_share(rows, None)
     }
 
@@ -135,7 +135,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// A rank repeats the pairs of a neighbouring band for discs it holds there, in the same order. Sums received from the other
     /// rank could not be added in the order of a single rank.
     #[inline]
-    pub fn of_share(rows: Rows, share: Option<&Share>) -> Self {
+    pub fn of_share(rows: RowLayout, share: Option<&RankShare>) -> Self {
         let ahead = rows.ahead;
         let bands = rows.bands().map(|band| {
             let inner = band.end.saturating_sub(ahead).max(band.start);
@@ -151,7 +151,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                     [of(&first, near), of(&last, near), of(&beside, [near[0], near[0]])]
                 }
             };
-            Band { rows, is_own: own, found: F::default(), notes: Notes::default(), pairs: 0 }
+            RowBand { rows, is_own: own, found: F::default(), notes: BandNotes::default(), pairs: 0 }
         });
         let bands = bands.filter(|band| band.is_own || band.rows.iter().any(|rows| !rows.is_empty()));
         Sweep { rows, bands: bands.collect(), parts: vec![] }
@@ -170,11 +170,11 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         &mut self,
         law: &L,
         finder: &impl Finder<S, P, Found = F>,
-        discs: &Discs<'_, S>,
+        discs: &DiscColumns<'_, S>,
         sums: [&mut [P]; 3],
-        asked: Asked,
+        asked: ObservationRequest,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         assert!(self.rows == finder.rows(), "the finder's rows are not those the sweep was made for");
         law::check(law)?;
         let count = finder.discs();
@@ -189,10 +189,10 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         );
         let sums = SumColumns(columns.each_mut().map(|column| column.1));
         let sentinel = count as u32;
-        let sweep = |band: &mut Band<F>, stage: usize| -> Result<(), ProgramError> {
-            let Band { rows, found, notes, pairs: met, .. } = band;
+        let sweep = |band: &mut RowBand<F>, stage: usize| -> Result<(), ProgramError> {
+            let RowBand { rows, found, notes, pairs: met, .. } = band;
             for rows in &rows[stage] {
-                let mut cursor = Cursor::at(rows.start);
+                let mut cursor = SearchCursor::at(rows.start);
                 while cursor.row < rows.end {
                     finder.find(discs.place, rows.clone(), &mut cursor, found, set)?;
                     let pairs = finder.pairs(found);
@@ -209,7 +209,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         if is_cheaper_apart(finder.tried(), self.bands.len(), threads) {
             self.parts.resize_with(PARTS * threads, F::default);
             for stage in 0..2 {
-                for Band { rows, notes, pairs: met, .. } in &mut self.bands {
+                for RowBand { rows, notes, pairs: met, .. } in &mut self.bands {
                     for rows in &rows[stage] {
                         let all = finder.searched(rows.clone());
                         let length = all.len().div_ceil(PARTS * threads).max(1);
@@ -232,8 +232,8 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         } else {
             in_stages(&mut self.bands, 2, sweep)?;
         }
-        for Band { rows, notes, pairs: met, .. } in &mut self.bands {
-            let mut beside = Touches::default();
+        for RowBand { rows, notes, pairs: met, .. } in &mut self.bands {
+            let mut beside = PairBuffer::default();
             rows[2].iter().for_each(|rows| finder.find_beside(rows.clone(), &mut beside));
             let pairs = &beside;
             if pairs.count() > 0 {
@@ -245,7 +245,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         for band in &mut self.bands {
             let (notes, pairs) = (&mut band.notes, std::mem::take(&mut band.pairs));
             if band.is_own {
-                of_bands.push(OfBand {
+                of_bands.push(BandReport {
                     pairs,
                     dissipated: notes.dissipated,
                     energy: notes.energy,
@@ -257,6 +257,6 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             }
             notes.clear();
         }
-        Ok(Met { deep, not_finite, ..Met::of(of_bands) })
+        Ok(SweepReport { deep, not_finite, ..SweepReport::of(of_bands) })
     }
 }

@@ -19,18 +19,18 @@
 //! - *Reads are not bounds-checked.* Columns are checked once a sweep, pairs are of discs by the [`Finder`](super::Finder)'s
 //!   contract, and a law can read only the columns it states ([`Stated`]).
 
-use super::pairs::{Pair, Pairs, SENTINELS};
-use crate::backend::{GROUP, Task};
+use super::pairs::{DiscPair, PairSequence, SENTINELS};
+use crate::backend::{GROUP, RegisterTask};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector};
-use crate::law::{Asked, Env, Field, Law, Stated, Sum};
+use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
 use std::cell::Cell;
 use std::mem::MaybeUninit;
 
 /// Quantities of the discs as a fast sweep reads them: one entry per disc and [`SENTINELS`] more. Columns that the law does not
 /// read may be empty.
 #[derive(Clone, Copy, Debug)]
-pub struct Discs<'a, S> {
+pub struct DiscColumns<'a, S> {
     /// Positions relative to the centres of the cells (length).
     pub place: [&'a [S]; 2],
     /// Velocities, in any unit of time.
@@ -45,21 +45,21 @@ pub struct Discs<'a, S> {
     pub inverse_mass: &'a [S],
 }
 
-impl<'a, S: Element> Discs<'a, S> {
+impl<'a, S: Element> DiscColumns<'a, S> {
     #[inline(always)]
-    fn column(&self, field: Field) -> &'a [S] {
+    fn column(&self, field: ParticleField) -> &'a [S] {
         match field {
-            Field::Velocity(axis) => self.velocity[axis as usize],
-            Field::Omega => self.omega,
-            Field::Radius => self.radius,
-            Field::InverseMass => self.inverse_mass,
-            Field::Mass | Field::Occupied => &[],
+            ParticleField::Velocity(axis) => self.velocity[axis as usize],
+            ParticleField::Omega => self.omega,
+            ParticleField::Radius => self.radius,
+            ParticleField::InverseMass => self.inverse_mass,
+            ParticleField::Mass | ParticleField::Occupied => &[],
         }
     }
 
     /// True if every column that a law reads has an entry for every disc and sentinel.
     #[inline]
-    pub(super) fn suffice(&self, fields: &[Field], discs: usize) -> bool {
+    pub(super) fn suffice(&self, fields: &[ParticleField], discs: usize) -> bool {
         let columns = fields.iter().map(|&field| self.column(field)).chain(self.place);
         columns.into_iter().all(|column| column.len() == discs + SENTINELS)
     }
@@ -77,11 +77,11 @@ unsafe impl<P: Send> Sync for SumColumns<P> {}
 
 /// Observations of a band beside the sums.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Notes {
+pub(super) struct BandNotes {
     /// Pairs deeper than the watched depth.
-    pub(super) deep: Vec<Pair>,
+    pub(super) deep: Vec<DiscPair>,
     /// Pairs whose force is not finite.
-    pub(super) not_finite: Vec<Pair>,
+    pub(super) not_finite: Vec<DiscPair>,
     /// Power dissipated by the contacts (energy/time).
     pub(super) dissipated: f64,
     /// Energy and virial of the pairs (energy).
@@ -91,14 +91,14 @@ pub(super) struct Notes {
     pub(super) deepest: f64,
 }
 
-impl Notes {
+impl BandNotes {
     /// Resets everything and keeps the allocated memory.
     pub(super) fn clear(&mut self) {
         let (mut deep, mut not_finite) =
             (std::mem::take(&mut self.deep), std::mem::take(&mut self.not_finite));
         deep.clear();
         not_finite.clear();
-        *self = Notes { deep, not_finite, ..Notes::default() };
+        *self = BandNotes { deep, not_finite, ..BandNotes::default() };
     }
 }
 
@@ -107,23 +107,23 @@ pub(super) struct Evaluate<'a, S, P, L, Q> {
     pub(super) law: &'a L,
     pub(super) pairs: &'a Q,
     pub(super) sentinel: u32,
-    pub(super) discs: &'a Discs<'a, S>,
+    pub(super) discs: &'a DiscColumns<'a, S>,
     pub(super) sums: SumColumns<P>,
-    pub(super) asked: Asked,
-    pub(super) notes: &'a mut Notes,
+    pub(super) asked: ObservationRequest,
+    pub(super) notes: &'a mut BandNotes,
 }
 
 /// As many entries as the widest register has lanes.
-type Lanes<T> = [T; GROUP];
+type LaneArray<T> = [T; GROUP];
 
 /// Environment of a law that evaluates one register of pairs.
-struct Gathered<'a, R: Registers, S> {
+struct GatherEnv<'a, R: Registers, S> {
     registers: R,
-    discs: &'a Discs<'a, S>,
-    own: &'a Lanes<u32>,
-    partner: &'a Lanes<u32>,
+    discs: &'a DiscColumns<'a, S>,
+    own: &'a LaneArray<u32>,
+    partner: &'a LaneArray<u32>,
     cell_offset: [R::V; 2],
-    asked: Asked,
+    asked: ObservationRequest,
     penetration: Cell<R::V>,
     power: Cell<R::V>,
     /// Energy and virial.
@@ -133,9 +133,9 @@ struct Gathered<'a, R: Registers, S> {
     partner_sums: [Cell<R::V>; 3],
 }
 
-impl<R: Registers, S: Element> Gathered<'_, R, S> {
+impl<R: Registers, S: Element> GatherEnv<'_, R, S> {
     #[inline(always)]
-    fn gather(&self, column: &[S], discs: &Lanes<u32>) -> R::V {
+    fn gather(&self, column: &[S], discs: &LaneArray<u32>) -> R::V {
         assemble(self.registers, |lane| {
             // SAFETY: the positions and the columns of the fields that the law states have an entry for every disc and for the
             // sentinels (checked by Sweep); `Stated` rejects reads of other columns. Pairs are of discs (Finder's contract), and
@@ -145,18 +145,21 @@ impl<R: Registers, S: Element> Gathered<'_, R, S> {
     }
 
     #[inline(always)]
-    fn field(&self, field: Field, discs: &Lanes<u32>) -> R::V {
+    fn field(&self, field: ParticleField, discs: &LaneArray<u32>) -> R::V {
         let value = self.gather(self.discs.column(field), discs);
         match field {
-            Field::Velocity(_) | Field::Omega => value * self.uniform(self.discs.per_time),
-            Field::Radius | Field::InverseMass | Field::Mass | Field::Occupied => value,
+            ParticleField::Velocity(_) | ParticleField::Omega => value * self.uniform(self.discs.per_time),
+            ParticleField::Radius
+            | ParticleField::InverseMass
+            | ParticleField::Mass
+            | ParticleField::Occupied => value,
         }
     }
 }
 
 #[inline(always)]
 fn assemble<R: Registers>(registers: R, number: impl Fn(usize) -> R::Lane) -> R::V {
-    let mut lanes = MaybeUninit::<Lanes<R::Lane>>::uninit();
+    let mut lanes = MaybeUninit::<LaneArray<R::Lane>>::uninit();
     let first = lanes.as_mut_ptr().cast::<R::Lane>();
     for lane in 0..R::LANES {
         // SAFETY: lane < LANES <= GROUP, the capacity of `lanes`.
@@ -167,14 +170,14 @@ fn assemble<R: Registers>(registers: R, number: impl Fn(usize) -> R::Lane) -> R:
 }
 
 #[inline(always)]
-fn spill<R: Registers>(registers: R, value: R::V) -> Lanes<R::Lane> {
+fn spill<R: Registers>(registers: R, value: R::V) -> LaneArray<R::Lane> {
     let mut lanes = [R::Lane::default(); GROUP];
     // SAFETY: `lanes` has GROUP entries, and LANES <= GROUP.
     unsafe { registers.store(lanes.as_mut_ptr(), value) };
     lanes
 }
 
-impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
+impl<R: Registers, S: Element> Env<2> for &GatherEnv<'_, R, S> {
     type V = R::V;
     type Place = ();
     const BOTH_PARTNERS: bool = true;
@@ -184,7 +187,7 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
         [self.gather(self.discs.place[0], self.own), self.gather(self.discs.place[1], self.own)]
     }
     #[inline(always)]
-    fn own(self, field: Field) -> R::V {
+    fn own(self, field: ParticleField) -> R::V {
         self.field(field, self.own)
     }
     #[inline(always)]
@@ -194,7 +197,7 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
         [x, y]
     }
     #[inline(always)]
-    fn partner(self, field: Field, (): ()) -> R::V {
+    fn partner(self, field: ParticleField, (): ()) -> R::V {
         self.field(field, self.partner)
     }
     #[inline(always)]
@@ -206,11 +209,11 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
         false // A branch does not pay: nearly all candidates are contacts.
     }
     #[inline(always)]
-    fn own_add(self, sum: Sum, value: R::V) {
+    fn own_add(self, sum: ParticleSum, value: R::V) {
         self.own_sums[sum.column::<2>()].set(value);
     }
     #[inline(always)]
-    fn partner_sub(self, sum: Sum, (): (), value: R::V) {
+    fn partner_sub(self, sum: ParticleSum, (): (), value: R::V) {
         self.partner_sums[sum.column::<2>()].set(value);
     }
     #[inline(always)]
@@ -249,7 +252,7 @@ impl<R: Registers, S: Element> Env<2> for &Gathered<'_, R, S> {
     fn section(self, _: &'static str) {}
 }
 
-impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Task<P> for Evaluate<'_, S, P, L, Q> {
+impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> for Evaluate<'_, S, P, L, Q> {
     #[inline(always)]
     fn on<R: Registers<Lane = P>>(self, registers: R) {
         const { assert!(R::LANES <= GROUP) }
@@ -263,10 +266,10 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Task<P> for Evaluate<'_, 
     }
 }
 
-impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> {
+impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P, L, Q> {
     #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
-    fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut Notes) {
+    fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut BandNotes) {
         let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
@@ -283,7 +286,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
         // SAFETY: each array has GROUP entries, and LANES <= GROUP.
         let cell_offset =
             unsafe { [registers.load(cell_offsets[0].as_ptr()), registers.load(cell_offsets[1].as_ptr())] };
-        let gathered = Gathered {
+        let gathered = GatherEnv {
             registers,
             discs: self.discs,
             own: &own,
@@ -298,7 +301,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
             partner_sums: [zero(), zero(), zero()],
         };
         // Only through `Stated`, which makes the unchecked reads of columns sound for any law.
-        let env = Stated::new(&gathered, self.law);
+        let env = StatedEnv::new(&gathered, self.law);
         let disc = self.law.own(env);
         self.law.pair(env, (), &disc);
 
@@ -366,17 +369,17 @@ impl<S: Element, P: Precision, L: Law<2>, Q: Pairs<P>> Evaluate<'_, S, P, L, Q> 
 }
 
 /// Adds the finite values one after the other.
-fn add<P: Element>(values: &Lanes<P>, count: usize, to: &mut f64) {
+fn add<P: Element>(values: &LaneArray<P>, count: usize, to: &mut f64) {
     let values = values.iter().take(count).map(|value| value.to_f64());
     values.filter(|value| value.is_finite()).for_each(|value| *to += value);
 }
 
 /// Maximum of the values and of the one before.
-fn deepest<P: Element>(values: &Lanes<P>, count: usize, before: f64) -> f64 {
+fn deepest<P: Element>(values: &LaneArray<P>, count: usize, before: f64) -> f64 {
     values.iter().take(count).map(|depth| depth.to_f64()).fold(before, f64::max)
 }
 
 /// Lists the pairs whose bits are set.
-fn list(bits: u64, count: usize, [own, partner]: [&Lanes<u32>; 2], to: &mut Vec<Pair>) {
+fn list(bits: u64, count: usize, [own, partner]: [&LaneArray<u32>; 2], to: &mut Vec<DiscPair>) {
     to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
 }

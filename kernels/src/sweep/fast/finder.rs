@@ -1,6 +1,6 @@
 //! Interface between a sweep and the search that finds its pairs.
 
-use super::pairs::{Pairs, Touches};
+use super::pairs::{PairBuffer, PairSequence};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::ProgramError;
@@ -9,7 +9,7 @@ use std::ops::Range;
 /// Division of rows into bands that threads may sweep concurrently. It affects the order of summation, so it depends on the scene
 /// alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rows {
+pub struct RowLayout {
     /// Number of rows.
     pub count: usize,
     /// Largest distance in rows from a disc to a partner ahead.
@@ -18,7 +18,7 @@ pub struct Rows {
     pub band: usize,
 }
 
-impl Rows {
+impl RowLayout {
     /// The rows of each band.
     #[inline]
     pub fn bands(&self) -> impl ExactSizeIterator<Item = Range<usize>> + use<> {
@@ -30,14 +30,14 @@ impl Rows {
 
 /// Share of one of several ranks: whole bands, whose sums and notes it owns. Its discs may also be in rows beside them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Share {
+pub struct RankShare {
     /// The rows of its bands.
     pub rows: Range<usize>,
     /// Number of rows beyond these in which its discs may be.
     pub margin: usize,
 }
 
-impl Share {
+impl RankShare {
     /// The part of `rows` at most `below` rows before the share's rows or `above` rows behind them. Rows are periodic with
     /// `count`.
     #[inline]
@@ -76,7 +76,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     fn discs(&self) -> usize;
 
     /// Rows of the discs.
-    fn rows(&self) -> Rows;
+    fn rows(&self) -> RowLayout;
 
     /// Replaces the contents of `found` by the pairs from `cursor` on in `rows`: some hundred, or all that remain. Advances the
     /// cursor, to the end of the rows when no pair is left. Partners are in these rows and those [`ahead`](Rows::ahead) of them.
@@ -87,7 +87,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
         &self,
         places: [&[S]; 2],
         rows: Range<usize>,
-        cursor: &mut Cursor,
+        cursor: &mut SearchCursor,
         found: &mut Self::Found,
         set: InstructionSet,
     ) -> Result<(), ProgramError>;
@@ -111,10 +111,10 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
 
     /// Appends pairs of some rows that the regular search does not find.
     #[inline]
-    fn find_beside(&self, _rows: Range<usize>, _: &mut Touches<P>) {}
+    fn find_beside(&self, _rows: Range<usize>, _: &mut PairBuffer<P>) {}
 
     /// The pairs found.
-    fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl Pairs<P> + 'a;
+    fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl PairSequence<P> + 'a;
 }
 
 /// Pairs that are found before the law is evaluated for them: they and their discs stay in the nearest cache.
@@ -125,17 +125,17 @@ pub(super) const MARGIN: f64 = 1.0 + 2e-5;
 
 /// Position at which a search resumes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cursor {
+pub struct SearchCursor {
     pub(super) row: usize,
     /// Position in the row, in the finder's own unit.
     pub(super) along: usize,
 }
 
-impl Cursor {
+impl SearchCursor {
     /// At the beginning of a row.
     #[inline]
     pub fn at(row: usize) -> Self {
-        Cursor { row, along: 0 }
+        SearchCursor { row, along: 0 }
     }
 
     /// The row to search next.

@@ -1,7 +1,7 @@
 //! Grid of sectors, and the sectors ahead of each.
 
-use super::finder::Rows;
-use crate::sweep::lattice::Frame;
+use super::finder::RowLayout;
+use crate::sweep::lattice::LatticeFrame;
 
 /// Least number of rows in a band.
 const BAND: usize = 16;
@@ -42,16 +42,16 @@ pub enum GridError {
 
 /// Grid of sectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grid {
+pub struct CellGrid {
     /// Origin and sector size.
-    pub frame: Frame,
+    pub frame: LatticeFrame,
     /// Columns and rows.
     pub counts: [usize; 2],
     /// True for a periodic side.
     pub periodic: [bool; 2],
 }
 
-impl Grid {
+impl CellGrid {
     /// Divides a box of given sides (length) into sectors for `discs` discs, at least `reach` wide (length) and not much wider
     /// than `widest`.
     ///
@@ -64,7 +64,7 @@ impl Grid {
         reach: f64,
         widest: f64,
         discs: usize,
-    ) -> Result<Grid, GridError> {
+    ) -> Result<CellGrid, GridError> {
         let room = OCCUPANTS * sides[0] * sides[1] / discs.max(1) as f64;
         let wide = reach.max(room.sqrt().min(widest));
         let mut counts = [1.0, 1.0];
@@ -81,7 +81,11 @@ impl Grid {
             return Err(GridError::TooMany { columns, rows });
         }
         let edge = [sides[0] / columns, sides[1] / rows];
-        Ok(Grid { frame: Frame { origin, edge }, counts: counts.map(|count| count as usize), periodic })
+        Ok(CellGrid {
+            frame: LatticeFrame { origin, edge },
+            counts: counts.map(|count| count as usize),
+            periodic,
+        })
     }
 
     /// The sector at an offset of at most one column and one row.
@@ -119,7 +123,7 @@ impl Grid {
     }
 
     #[inline]
-    pub(super) fn rows(&self) -> Rows {
-        Rows { count: self.counts[1], ahead: 1, band: BAND }
+    pub(super) fn rows(&self) -> RowLayout {
+        RowLayout { count: self.counts[1], ahead: 1, band: BAND }
     }
 }

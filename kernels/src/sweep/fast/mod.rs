@@ -39,11 +39,11 @@ mod pairs;
 mod sectors;
 mod verlet;
 
-pub use advance::{Advance, Copies, DisplacementLimit, Motion, Passed};
-pub use bands::{Met, OfBand, Sweep};
-pub use contacts::Discs;
-pub use finder::{Cursor, Finder, Rows, Share};
-pub use grid::{Grid, GridError};
-pub use pairs::{Pairs, SENTINELS, Touches};
+pub use advance::{Advance, DisplacementLimit, EquationOfMotion, PassReport, PositionCopies};
+pub use bands::{BandReport, Sweep, SweepReport};
+pub use contacts::DiscColumns;
+pub use finder::{Finder, RankShare, RowLayout, SearchCursor};
+pub use grid::{CellGrid, GridError};
+pub use pairs::{PairBuffer, PairSequence, SENTINELS};
 pub use sectors::Sectors;
 pub use verlet::VerletList;

@@ -1,21 +1,21 @@
 //! Distance filter of the searches: lists pairs that are near.
 
-use super::finder::{AT_ONCE, Cursor, MARGIN};
-use super::grid::Grid;
-use super::pairs::{SENTINELS, Touch, Touches};
+use super::finder::{AT_ONCE, MARGIN, SearchCursor};
+use super::grid::CellGrid;
+use super::pairs::{CandidatePair, PairBuffer, SENTINELS};
 use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
 
 /// Lists those of the given pairs that are nearer than a limit.
-pub(super) struct Near<'a, S, P> {
+pub(super) struct DistanceFilter<'a, S, P> {
     places: [&'a [S]; 2],
     cell_offsets: [[f64; 2]; 5],
     limit: f64,
-    touches: &'a mut Vec<Touch<P>>,
+    touches: &'a mut Vec<CandidatePair<P>>,
 }
 
-impl<'a, S: Element, P: Precision> Near<'a, S, P> {
+impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     /// Filter for `discs` discs that touch at most at a distance `reach` (length).
     ///
     /// # Panics
@@ -24,9 +24,9 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
     pub(super) fn new(
         places: [&'a [S]; 2],
         discs: usize,
-        grid: &Grid,
+        grid: &CellGrid,
         reach: f64,
-        touches: &'a mut Touches<P>,
+        touches: &'a mut PairBuffer<P>,
     ) -> Self {
         assert!(
             places.iter().all(|place| place.len() == discs + SENTINELS),
@@ -34,7 +34,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
         );
         touches.0.clear();
         let limit = reach * reach * MARGIN;
-        Near { places, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
+        DistanceFilter { places, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
     }
 
     /// Searches rows piece by piece (`pieces` of a row) until enough pairs are listed.
@@ -42,7 +42,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
     pub(super) fn search(
         &mut self,
         rows: Range<usize>,
-        cursor: &mut Cursor,
+        cursor: &mut SearchCursor,
         pieces: impl Fn(usize) -> usize,
         piece: impl Fn(&mut Self, usize, usize),
     ) {
@@ -55,7 +55,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
                 piece(self, cursor.row, cursor.along);
                 cursor.along += 1;
             }
-            *cursor = Cursor::at(cursor.row + 1);
+            *cursor = SearchCursor::at(cursor.row + 1);
         }
     }
 
@@ -84,7 +84,7 @@ impl<'a, S: Element, P: Precision> Near<'a, S, P> {
             self.touches.reserve(AT_ONCE);
         }
         // Written in either case, which avoids an unpredictable branch.
-        let touch = Touch { discs: [first, second], cell_offset: cell_offset.map(P::from_f64) };
+        let touch = CandidatePair { discs: [first, second], cell_offset: cell_offset.map(P::from_f64) };
         // SAFETY: `reserve` above has left capacity for one more, and it is written before the length covers it.
         unsafe {
             self.touches.as_mut_ptr().add(length).write(touch);

@@ -24,10 +24,10 @@
 //! Inside the box a disc is compared with two ranges, each in one loop. At the edge, where a range ends or continues at the other
 //! side of the box, it is compared sector by sector.
 
-use super::finder::{Cursor, Finder, Rows};
-use super::grid::{AHEAD, Grid};
-use super::near::Near;
-use super::pairs::{Pairs, Touches};
+use super::finder::{Finder, RowLayout, SearchCursor};
+use super::grid::{AHEAD, CellGrid};
+use super::near::DistanceFilter;
+use super::pairs::{PairBuffer, PairSequence};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -39,7 +39,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// on the past.
 #[derive(Clone, Debug)]
 pub struct Sectors {
-    grid: Grid,
+    grid: CellGrid,
     reach: f64,
     /// The sector of each disc.
     sector: Vec<u32>,
@@ -60,7 +60,7 @@ impl Sectors {
     /// # Panics
     /// If there are 2²⁹ discs or more.
     #[inline]
-    pub fn new(grid: Grid, discs: usize, reach: f64) -> Self {
+    pub fn new(grid: CellGrid, discs: usize, reach: f64) -> Self {
         assert!(discs < 1 << 29, "{discs} discs are too many to number: sectors hold fewer than 2^29");
         let starts = vec![0; grid.counts[0] * grid.counts[1] + 1];
         Sectors { grid, reach, sector: vec![NOWHERE; discs], starts, members: vec![] }
@@ -74,7 +74,7 @@ impl Sectors {
 
     /// Grid of the sectors.
     #[inline]
-    pub fn grid(&self) -> &Grid {
+    pub fn grid(&self) -> &CellGrid {
         &self.grid
     }
 
@@ -294,7 +294,7 @@ fn cut(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
 
 // SAFETY: members are numbers of discs below the length of `sector`; the partners of a row's discs are in that row or the next.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
-    type Found = Touches<P>;
+    type Found = PairBuffer<P>;
 
     #[inline]
     fn discs(&self) -> usize {
@@ -302,7 +302,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     }
 
     #[inline]
-    fn rows(&self) -> Rows {
+    fn rows(&self) -> RowLayout {
         self.grid.rows()
     }
 
@@ -310,11 +310,11 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         &self,
         places: [&[S]; 2],
         rows: Range<usize>,
-        cursor: &mut Cursor,
-        found: &mut Touches<P>,
+        cursor: &mut SearchCursor,
+        found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = Near::new(places, self.sector.len(), &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(places, self.sector.len(), &self.grid, self.reach, found);
         near.search(
             rows,
             cursor,
@@ -346,8 +346,8 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         self.members_of_rows(rows)
     }
 
-    fn find_part(&self, places: [&[S]; 2], part: Range<usize>, found: &mut Touches<P>) {
-        let mut near = Near::new(places, self.sector.len(), &self.grid, self.reach, found);
+    fn find_part(&self, places: [&[S]; 2], part: Range<usize>, found: &mut PairBuffer<P>) {
+        let mut near = DistanceFilter::new(places, self.sector.len(), &self.grid, self.reach, found);
         let (mut last, mut at) = (NOWHERE, [0.0; 2]);
         self.pairs_of_members(part, |first, second, cell_offset| {
             // SAFETY: `pairs_of_members` gives members of sectors, which are discs, and numbers of cell offsets below 5.
@@ -361,7 +361,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     }
 
     #[inline]
-    fn pairs<'a>(&'a self, found: &'a Touches<P>) -> impl Pairs<P> + 'a {
+    fn pairs<'a>(&'a self, found: &'a PairBuffer<P>) -> impl PairSequence<P> + 'a {
         found
     }
 }

@@ -15,10 +15,10 @@
 //! sector to those ahead of it (itself first). It gives the vector between the reference points of the two positions. So a pair
 //! across a periodic side costs no more than any other, and no position is ever wrapped.
 
-use super::finder::{Cursor, Finder, Rows};
-use super::grid::Grid;
-use super::near::Near;
-use super::pairs::{Pair, Pairs, Touches};
+use super::finder::{Finder, RowLayout, SearchCursor};
+use super::grid::CellGrid;
+use super::near::DistanceFilter;
+use super::pairs::{DiscPair, PairBuffer, PairSequence};
 use super::sectors::Sectors;
 use crate::InstructionSet;
 use crate::backend::Precision;
@@ -40,19 +40,19 @@ const ROWS: usize = 8;
 /// Positions stay relative to the sectors in which the discs were when the lists were built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerletList {
-    grid: Grid,
+    grid: CellGrid,
     reach: f64,
     discs: usize,
     /// Index in `pairs` of the first pair of each row of sectors, and the end.
     rows: Vec<u32>,
-    pairs: Vec<Pair>,
+    pairs: Vec<DiscPair>,
 }
 
 /// Lists of some rows.
 #[derive(Default)]
-struct Part {
+struct RowLists {
     rows: Vec<u32>,
-    pairs: Vec<Pair>,
+    pairs: Vec<DiscPair>,
 }
 
 impl VerletList {
@@ -75,7 +75,7 @@ impl VerletList {
         let at = |disc: u32| places.map(|place| place[disc as usize].to_f64());
         let cell_offsets = grid.cell_offsets();
         let part = |rows: Range<usize>| {
-            let mut part = Part::default();
+            let mut part = RowLists::default();
             for row in rows {
                 part.rows.push(part.pairs.len() as u32);
                 sectors.pairs_of_row(row, 0..grid.counts[0], |disc, partner, cell_offset| {
@@ -98,7 +98,7 @@ impl VerletList {
     }
 
     /// Copies the lists of all parts to their final position, one behind the other.
-    fn join(&mut self, parts: Vec<Part>) {
+    fn join(&mut self, parts: Vec<RowLists>) {
         let (mut rows, mut pairs) = (self.rows.as_mut_slice(), self.pairs.as_mut_slice());
         let mut before = 0;
         let copies = parts.into_iter().map(|part| {
@@ -132,7 +132,7 @@ impl VerletList {
 // SAFETY: the lists hold members of sectors, which are numbers of discs below `discs`; the partners of a row's discs are in that
 // row or the next.
 unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
-    type Found = Touches<P>;
+    type Found = PairBuffer<P>;
 
     #[inline]
     fn discs(&self) -> usize {
@@ -140,7 +140,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
     }
 
     #[inline]
-    fn rows(&self) -> Rows {
+    fn rows(&self) -> RowLayout {
         self.grid.rows()
     }
 
@@ -148,11 +148,11 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
         &self,
         places: [&[S]; 2],
         rows: Range<usize>,
-        cursor: &mut Cursor,
-        found: &mut Touches<P>,
+        cursor: &mut SearchCursor,
+        found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = Near::new(places, self.discs, &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(places, self.discs, &self.grid, self.reach, found);
         let pairs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
         near.search(
             rows,
@@ -172,7 +172,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
     }
 
     #[inline]
-    fn pairs<'a>(&'a self, found: &'a Touches<P>) -> impl Pairs<P> + 'a {
+    fn pairs<'a>(&'a self, found: &'a PairBuffer<P>) -> impl PairSequence<P> + 'a {
         found
     }
 }

@@ -1,7 +1,7 @@
 //! The Index, which stores the disc of each cell. BP93 (2), (3).
 
-use super::shape::{Coordinates, Frame, LatticeShape};
-use crate::isa::{Array, Counter, Element, Machine, Predicate, Slot, Text, Vector};
+use super::shape::{Coordinates, LatticeFrame, LatticeShape};
+use crate::isa::{Array, Element, Kernel, LaneCounter, Machine, Predicate, Slot, Vector};
 use std::marker::PhantomData;
 
 const DISC_CELL: Slot<u32> = Slot::new(Array::DiscCell);
@@ -10,16 +10,16 @@ const HALO_CELL: Slot<u32> = Slot::new(Array::HaloCell);
 const HALO_SOURCE: Slot<u32> = Slot::new(Array::HaloSource);
 
 /// Counts discs outside the lattice or with a position that is not a number. Written by [`Enter`].
-pub const STRAYS: Counter = Counter(0);
+pub const STRAYS: LaneCounter = LaneCounter(0);
 /// Counts discs whose cell another disc took, and strays again. Written by [`Check`].
-pub const CONFLICTS: Counter = Counter(1);
+pub const CONFLICTS: LaneCounter = LaneCounter(1);
 
 /// Empties the Index. Vector length: the padded lattice.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Clear;
+pub struct ClearIndex;
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl Text for Clear {
+unsafe impl Kernel for ClearIndex {
     type Lane = f64;
 
     #[inline(always)]
@@ -44,27 +44,27 @@ pub(crate) fn wrapped<V: Vector>(r: V, [low, high]: [V; 2], period: V) -> V {
 /// one, or at a position that is not a number. Arithmetic is in double precision for every `S` and `P`: single precision counts
 /// cells exactly only to 2²⁴.
 #[derive(Clone, Copy, Debug)]
-pub struct Enter<S, P> {
+pub struct EnterDiscs<S, P> {
     shape: LatticeShape,
-    frame: Frame,
+    frame: LatticeFrame,
     coordinates: Coordinates,
     anchored: bool,
     precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Element, P: Element> Enter<S, P> {
+impl<S: Element, P: Element> EnterDiscs<S, P> {
     /// Kernel for a lattice at `frame`, with state positions from the origin.
     #[inline]
-    pub fn new(shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
-        Enter { shape, frame, coordinates, anchored: false, precisions: PhantomData }
+    pub fn new(shape: LatticeShape, frame: LatticeFrame, coordinates: Coordinates) -> Self {
+        EnterDiscs { shape, frame, coordinates, anchored: false, precisions: PhantomData }
     }
 
     /// Kernel for a lattice at `frame`, with state positions from the centre of the cell in which the disc was last entered. In
     /// single precision these are as precise as the cell is small, anywhere in the box.
     #[inline]
-    pub fn anchored(shape: LatticeShape, frame: Frame) -> Self {
+    pub fn anchored(shape: LatticeShape, frame: LatticeFrame) -> Self {
         let coordinates = Coordinates::CellRelative;
-        Enter { shape, frame, coordinates, anchored: true, precisions: PhantomData }
+        EnterDiscs { shape, frame, coordinates, anchored: true, precisions: PhantomData }
     }
 
     /// Column or row of a position relative to the centre of the cell `from`, as [`along`](Self::along) returns it for absolute
@@ -158,7 +158,7 @@ impl<S: Element, P: Element> Enter<S, P> {
 }
 
 // SAFETY: the slots depend on the shape, the coordinates and the anchoring only.
-unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
+unsafe impl<S: Element, P: Element> Kernel for EnterDiscs<S, P> {
     type Lane = f64;
 
     #[inline(always)]
@@ -197,10 +197,10 @@ unsafe impl<S: Element, P: Element> Text for Enter<S, P> {
 
 /// Gathers the Index and compares: a scatter silently loses a disc when two share a cell. Vector length: the discs.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Check;
+pub struct CheckIndex;
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl Text for Check {
+unsafe impl Kernel for CheckIndex {
     type Lane = f64;
 
     #[inline(always)]
@@ -213,10 +213,10 @@ unsafe impl Text for Check {
 
 /// Copies the Index to the halo of periodic sides. Vector length: the halo cells.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Images;
+pub struct IndexImages;
 
 // SAFETY: the body names its slots unconditionally.
-unsafe impl Text for Images {
+unsafe impl Kernel for IndexImages {
     type Lane = f64;
 
     #[inline(always)]

@@ -1,16 +1,16 @@
 //! Evaluation of a law at every offset of the mask: the force computation of BP93, section 2, step 4.
 
-use super::shape::{Coordinates, Frame, LatticeShape};
+use super::shape::{Coordinates, LatticeFrame, LatticeShape};
 use super::vectors::lattice_vector;
-use crate::isa::{Array, Counter, Element, Machine, Slot, Text, Vector};
-use crate::law::{Asked, Env, Field, Law, Stated, Sum};
+use crate::isa::{Array, Element, Kernel, LaneCounter, Machine, Slot, Vector};
+use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
 use crate::mask::Mask;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
 /// An offset of the mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Neighbour {
+struct MaskNeighbour {
     /// Distance in elements from the own cell.
     shift: isize,
     /// Vector from the own cell's centre to this one's (length); 0 for absolute positions.
@@ -24,26 +24,38 @@ struct Neighbour {
 #[derive(Clone, Debug)]
 pub struct Forces<P, L> {
     law: L,
-    places: Vec<Neighbour>,
+    places: Vec<MaskNeighbour>,
     relative: bool,
-    asked: Asked,
+    asked: ObservationRequest,
     precision: PhantomData<P>,
 }
 
 /// Counts cells with a contact deeper than the watched depth. Written by [`Forces`] that are [asked](Forces::asked) for it.
-pub const DEEP: Counter = Counter(2);
+pub const DEEP: LaneCounter = LaneCounter(2);
 
 impl<P: Element, L: Law<2>> Forces<P, L> {
     /// Kernel for a law, a mask and a lattice.
     ///
     /// Recording it panics if the law reads a quantity that it does not state.
-    pub fn new(law: L, mask: &Mask, shape: LatticeShape, frame: Frame, coordinates: Coordinates) -> Self {
+    pub fn new(
+        law: L,
+        mask: &Mask,
+        shape: LatticeShape,
+        frame: LatticeFrame,
+        coordinates: Coordinates,
+    ) -> Self {
         let relative = coordinates == Coordinates::CellRelative;
-        let places = mask.offsets().iter().map(|&offset| Neighbour {
+        let places = mask.offsets().iter().map(|&offset| MaskNeighbour {
             shift: shape.shift(offset),
             way: [f64::from(offset.columns) * frame.edge[0], f64::from(offset.rows) * frame.edge[1]],
         });
-        Forces { law, places: places.collect(), relative, asked: Asked::default(), precision: PhantomData }
+        Forces {
+            law,
+            places: places.collect(),
+            relative,
+            asked: ObservationRequest::default(),
+            precision: PhantomData,
+        }
     }
 
     /// Makes the kernel also write the requested observations:
@@ -56,37 +68,37 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
     /// Each disc has the share of a pair that the law defines: the sums over all mobile discs are those of the pairs.
     #[must_use]
     #[inline]
-    pub fn asked(self, asked: Asked) -> Self {
+    pub fn asked(self, asked: ObservationRequest) -> Self {
         Forces { asked, ..self }
     }
 }
 
 /// Destination array of a sum.
 #[inline]
-const fn sum_array(sum: Sum) -> Array {
+const fn sum_array(sum: ParticleSum) -> Array {
     match sum {
-        Sum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
-        Sum::Torque => Array::Torque,
+        ParticleSum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
+        ParticleSum::Torque => Array::Torque,
         #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
-        Sum::ForceRate(_) => panic!("a law of the plane states no rates of forces"),
+        ParticleSum::ForceRate(_) => panic!("a law of the plane states no rates of forces"),
     }
 }
 
 /// Environment of a law that evaluates one strip of cells and the vectors around it.
-struct Around<M: Machine> {
+struct LatticeEnv<M: Machine> {
     machine: M,
     relative: bool,
-    asked: Asked,
+    asked: ObservationRequest,
     deepest: Cell<M::V>,
     power: Cell<M::V>,
     energy: Cell<M::V>,
     virial: Cell<M::V>,
-    sums: [Cell<M::V>; Sum::PLANAR.len()],
+    sums: [Cell<M::V>; ParticleSum::PLANAR.len()],
 }
 
-impl<M: Machine> Env<2> for &Around<M> {
+impl<M: Machine> Env<2> for &LatticeEnv<M> {
     type V = M::V;
-    type Place = Neighbour;
+    type Place = MaskNeighbour;
     const BOTH_PARTNERS: bool = false;
 
     #[inline(always)]
@@ -96,12 +108,12 @@ impl<M: Machine> Env<2> for &Around<M> {
     }
 
     #[inline(always)]
-    fn own(self, field: Field) -> M::V {
+    fn own(self, field: ParticleField) -> M::V {
         self.machine.load(Slot::<M::Lane>::new(lattice_vector(field)))
     }
 
     #[inline(always)]
-    fn displacement(self, own: [M::V; 2], place: Neighbour) -> [M::V; 2] {
+    fn displacement(self, own: [M::V; 2], place: MaskNeighbour) -> [M::V; 2] {
         let m = self.machine;
         let mut x = own[0] - m.load_shifted(Slot::<M::Lane>::new(Array::X), place.shift);
         let mut y = own[1] - m.load_shifted(Slot::<M::Lane>::new(Array::Y), place.shift);
@@ -113,7 +125,7 @@ impl<M: Machine> Env<2> for &Around<M> {
     }
 
     #[inline(always)]
-    fn partner(self, field: Field, place: Neighbour) -> M::V {
+    fn partner(self, field: ParticleField, place: MaskNeighbour) -> M::V {
         self.machine.load_shifted(Slot::<M::Lane>::new(lattice_vector(field)), place.shift)
     }
 
@@ -128,14 +140,14 @@ impl<M: Machine> Env<2> for &Around<M> {
     }
 
     #[inline(always)]
-    fn own_add(self, sum: Sum, value: M::V) {
+    fn own_add(self, sum: ParticleSum, value: M::V) {
         let cell = &self.sums[sum.column::<2>()];
         cell.set(cell.get() + value);
     }
 
     #[expect(clippy::unreachable, reason = "called only if `Env::BOTH_PARTNERS`")]
     #[inline]
-    fn partner_sub(self, _: Sum, _: Neighbour, _: M::V) {
+    fn partner_sub(self, _: ParticleSum, _: MaskNeighbour, _: M::V) {
         unreachable!("every pair is visited from both sides")
     }
 
@@ -181,14 +193,14 @@ impl<M: Machine> Env<2> for &Around<M> {
 }
 
 // SAFETY: slots and shifts depend on the law, the offsets, the coordinates and the requested observations only.
-unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
+unsafe impl<P: Element, L: Law<2>> Kernel for Forces<P, L> {
     type Lane = P;
 
     #[inline(always)]
     fn body<M: Machine<Lane = P>>(&self, m: M) {
         m.section("own disc");
         let zero = m.uniform(0.0);
-        let around = Around::<M> {
+        let around = LatticeEnv::<M> {
             machine: m,
             relative: self.relative,
             asked: self.asked,
@@ -198,7 +210,7 @@ unsafe impl<P: Element, L: Law<2>> Text for Forces<P, L> {
             virial: Cell::new(zero),
             sums: [Cell::new(zero), Cell::new(zero), Cell::new(zero)],
         };
-        let env = Stated::new(&around, &self.law);
+        let env = StatedEnv::new(&around, &self.law);
         let own = self.law.own(env);
         for &place in &self.places {
             self.law.pair(env, place, &own);

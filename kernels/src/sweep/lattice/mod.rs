@@ -9,4 +9,4 @@ pub mod forces;
 mod shape;
 pub mod vectors;
 
-pub use shape::{Coordinates, Frame, Image, LatticeShape, ShapeError};
+pub use shape::{Coordinates, Image, LatticeFrame, LatticeShape, ShapeError};

@@ -40,7 +40,7 @@ pub enum ShapeError {
 
 /// Position of the lattice in space, and the size of its cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct LatticeFrame {
     /// Lower left corner (length).
     pub origin: [f64; 2],
     /// Sides of a cell (length).
@@ -210,7 +210,7 @@ impl LatticeShape {
     /// Padded lattice vector with the x of empty cells: finite, and farther from every disc and every other empty cell than any
     /// contact reaches.
     #[inline]
-    pub fn far<T: crate::isa::Element>(&self, frame: Frame) -> Vec<T> {
+    pub fn far<T: crate::isa::Element>(&self, frame: LatticeFrame) -> Vec<T> {
         let extent = (0..2)
             .map(|axis| {
                 let cells = [self.columns, self.rows][axis] + 2 * self.half_width + 2;
@@ -294,7 +294,7 @@ mod tests {
     fn empty_cells_are_far_in_both_precisions() {
         let mask = Mask::square(2);
         let shape = LatticeShape::new(300, 200, &mask, [true; 2]).unwrap();
-        let frame = Frame { origin: [-3.0, 1e3], edge: [0.5, 0.7] };
+        let frame = LatticeFrame { origin: [-3.0, 1e3], edge: [0.5, 0.7] };
         let far: Vec<f32> = shape.far(frame);
         let reach = 2.0 * 1e3 + 300.0;
         assert!(far.iter().all(|x| x.is_finite() && *x > 2.0 * reach));

@@ -1,35 +1,35 @@
 //! Lattice vectors: quantities of the discs, cell by cell.
 
 use super::shape::{Coordinates, LatticeShape};
-use crate::isa::{Array, Element, Machine, Slot, Text};
-use crate::law::Field;
+use crate::isa::{Array, Element, Kernel, Machine, Slot};
+use crate::law::ParticleField;
 use std::marker::PhantomData;
 
 /// Lattice vector of a quantity.
 #[inline]
-pub(crate) const fn lattice_vector(field: Field) -> Array {
+pub(crate) const fn lattice_vector(field: ParticleField) -> Array {
     match field {
-        Field::Velocity(axis) => [Array::Vx, Array::Vy][axis as usize],
-        Field::Omega => Array::Omega,
-        Field::Radius => Array::Radius,
-        Field::InverseMass => Array::InverseMass,
-        Field::Mass => Array::Mass,
-        Field::Occupied => Array::Test,
+        ParticleField::Velocity(axis) => [Array::Vx, Array::Vy][axis as usize],
+        ParticleField::Omega => Array::Omega,
+        ParticleField::Radius => Array::Radius,
+        ParticleField::InverseMass => Array::InverseMass,
+        ParticleField::Mass => Array::Mass,
+        ParticleField::Occupied => Array::Test,
     }
 }
 
 /// Array of a quantity disc by disc, and its value in an empty cell.
 #[inline]
-const fn of_discs(field: Field) -> (Array, f64) {
+const fn of_discs(field: ParticleField) -> (Array, f64) {
     match field {
-        Field::Velocity(axis) => ([Array::DiscVx, Array::DiscVy][axis as usize], 0.0),
-        Field::Omega => (Array::DiscOmega, 0.0),
-        Field::Radius => (Array::DiscRadius, 0.0),
+        ParticleField::Velocity(axis) => ([Array::DiscVx, Array::DiscVy][axis as usize], 0.0),
+        ParticleField::Omega => (Array::DiscOmega, 0.0),
+        ParticleField::Radius => (Array::DiscRadius, 0.0),
         // The effective mass of two empty cells must be a number.
-        Field::InverseMass => (Array::DiscInverseMass, 1.0),
-        Field::Mass => (Array::DiscMass, 1.0),
+        ParticleField::InverseMass => (Array::DiscInverseMass, 1.0),
+        ParticleField::Mass => (Array::DiscMass, 1.0),
         #[expect(clippy::panic, reason = "found by the author of such a law, when the kernel is built")]
-        Field::Occupied => {
+        ParticleField::Occupied => {
             panic!("no array of occupied cells: an empty cell has a position far from all discs")
         }
     }
@@ -41,19 +41,19 @@ const fn of_discs(field: Field) -> (Array, f64) {
 /// An empty cell gets a position far from everything, which excludes every contact with it. It replaces the vector Test of BP93,
 /// which [`printed`](crate::printed) uses.
 #[derive(Clone, Copy, Debug)]
-pub struct Spread<P> {
-    fields: &'static [Field],
+pub struct SpreadToLattice<P> {
+    fields: &'static [ParticleField],
     image_shifts: [bool; 2],
     precision: PhantomData<P>,
 }
 
-impl<P: Element> Spread<P> {
+impl<P: Element> SpreadToLattice<P> {
     /// Kernel for the quantities that a law reads. Absolute positions are shifted in the halo of periodic sides, by the arrays
     /// `image.x` and `image.y`; relative ones are copied.
     #[inline]
-    pub fn new(shape: LatticeShape, coordinates: Coordinates, fields: &'static [Field]) -> Self {
+    pub fn new(shape: LatticeShape, coordinates: Coordinates, fields: &'static [ParticleField]) -> Self {
         let shifts = coordinates == Coordinates::Absolute;
-        Spread {
+        SpreadToLattice {
             fields,
             image_shifts: shape.periodic().map(|periodic| periodic && shifts),
             precision: PhantomData,
@@ -62,7 +62,7 @@ impl<P: Element> Spread<P> {
 }
 
 // SAFETY: the slots depend on the fields and the periodic sides only.
-unsafe impl<P: Element> Text for Spread<P> {
+unsafe impl<P: Element> Kernel for SpreadToLattice<P> {
     type Lane = P;
 
     #[inline(always)]

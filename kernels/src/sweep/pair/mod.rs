@@ -5,12 +5,12 @@
 mod motion;
 mod samples;
 
-use crate::law::{Env, Field, Law, Stated, Sum};
+use crate::law::{Env, Law, ParticleField, ParticleSum, StatedEnv};
 use std::cell::Cell;
 
 /// A disc with every quantity that a law may read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+pub struct PairBody {
     /// Centre.
     pub position: [f64; 2],
     /// Velocity.
@@ -23,18 +23,18 @@ pub struct Body {
     pub inverse_mass: f64,
 }
 
-impl Body {
+impl PairBody {
     /// A disc of radius and mass 1 at rest.
     #[inline]
-    pub fn at(x: f64, y: f64) -> Body {
-        Body { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
+    pub fn at(x: f64, y: f64) -> PairBody {
+        PairBody { position: [x, y], velocity: [0.0; 2], omega: 0.0, radius: 1.0, inverse_mass: 1.0 }
     }
 
     /// Mirror image in the x axis.
     #[inline]
-    pub(crate) fn mirrored(self) -> Body {
+    pub(crate) fn mirrored(self) -> PairBody {
         let flip = |[x, y]: [f64; 2]| [x, -y];
-        Body { position: flip(self.position), velocity: flip(self.velocity), omega: -self.omega, ..self }
+        PairBody { position: flip(self.position), velocity: flip(self.velocity), omega: -self.omega, ..self }
     }
 
     /// Velocity of the surface at `arm` from the centre: v + Ω × arm.
@@ -48,7 +48,7 @@ impl Body {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// The law's own disc i, and its partner j.
-    pub bodies: [Body; 2],
+    pub bodies: [PairBody; 2],
 }
 
 impl Pair {
@@ -65,9 +65,9 @@ impl Pair {
     }
 
     #[inline]
-    fn meet<L: Law<2>>(&self, law: &L) -> Meeting<'_> {
-        let meeting = Meeting { bodies: &self.bodies, sums: Cell::default(), energy: Cell::default() };
-        let env = Stated::new(&meeting, law);
+    fn meet<L: Law<2>>(&self, law: &L) -> PairEnv<'_> {
+        let meeting = PairEnv { bodies: &self.bodies, sums: Cell::default(), energy: Cell::default() };
+        let env = StatedEnv::new(&meeting, law);
         let own = law.own(env);
         law.pair(env, (), &own);
         meeting
@@ -106,7 +106,7 @@ impl Pair {
     #[inline]
     pub fn slip(&self) -> f64 {
         let n = self.normal();
-        let surface = |body: &Body, towards: f64| {
+        let surface = |body: &PairBody, towards: f64| {
             body.surface_velocity(n.map(|component| towards * body.radius * component))
         };
         let [own, partner] = &self.bodies;
@@ -144,7 +144,7 @@ impl Pair {
     /// Mirror image in the x axis.
     #[inline]
     pub(crate) fn mirrored(self) -> Pair {
-        Pair { bodies: self.bodies.map(Body::mirrored) }
+        Pair { bodies: self.bodies.map(PairBody::mirrored) }
     }
 }
 
@@ -159,36 +159,36 @@ fn length(vector: [f64; 2]) -> f64 {
 }
 
 /// Environment of a law that evaluates one pair.
-struct Meeting<'a> {
-    bodies: &'a [Body; 2],
+struct PairEnv<'a> {
+    bodies: &'a [PairBody; 2],
     sums: Cell<[[f64; 3]; 2]>,
     /// Energy and virial.
     energy: Cell<[f64; 2]>,
 }
 
-impl Meeting<'_> {
+impl PairEnv<'_> {
     #[inline]
-    fn field(&self, body: usize, field: Field) -> f64 {
+    fn field(&self, body: usize, field: ParticleField) -> f64 {
         let body = &self.bodies[body];
         match field {
-            Field::Velocity(axis) => body.velocity[axis as usize],
-            Field::Omega => body.omega,
-            Field::Radius => body.radius,
-            Field::InverseMass => body.inverse_mass,
-            Field::Mass => 1.0 / body.inverse_mass,
-            Field::Occupied => 1.0,
+            ParticleField::Velocity(axis) => body.velocity[axis as usize],
+            ParticleField::Omega => body.omega,
+            ParticleField::Radius => body.radius,
+            ParticleField::InverseMass => body.inverse_mass,
+            ParticleField::Mass => 1.0 / body.inverse_mass,
+            ParticleField::Occupied => 1.0,
         }
     }
 
     #[inline]
-    fn add(&self, body: usize, sum: Sum, value: f64) {
+    fn add(&self, body: usize, sum: ParticleSum, value: f64) {
         let mut sums = self.sums.get();
         sums[body][sum.column::<2>()] += value;
         self.sums.set(sums);
     }
 }
 
-impl Env<2> for &Meeting<'_> {
+impl Env<2> for &PairEnv<'_> {
     type V = f64;
     type Place = ();
     const BOTH_PARTNERS: bool = true;
@@ -198,7 +198,7 @@ impl Env<2> for &Meeting<'_> {
         self.bodies[0].position
     }
     #[inline]
-    fn own(self, field: Field) -> f64 {
+    fn own(self, field: ParticleField) -> f64 {
         self.field(0, field)
     }
     #[inline]
@@ -206,7 +206,7 @@ impl Env<2> for &Meeting<'_> {
         [own[0] - self.bodies[1].position[0], own[1] - self.bodies[1].position[1]]
     }
     #[inline]
-    fn partner(self, field: Field, (): ()) -> f64 {
+    fn partner(self, field: ParticleField, (): ()) -> f64 {
         self.field(1, field)
     }
     #[inline]
@@ -218,11 +218,11 @@ impl Env<2> for &Meeting<'_> {
         !predicate
     }
     #[inline]
-    fn own_add(self, sum: Sum, value: f64) {
+    fn own_add(self, sum: ParticleSum, value: f64) {
         self.add(0, sum, value);
     }
     #[inline]
-    fn partner_sub(self, sum: Sum, (): (), value: f64) {
+    fn partner_sub(self, sum: ParticleSum, (): (), value: f64) {
         self.add(1, sum, -value);
     }
     #[inline]

@@ -1,12 +1,12 @@
 //! Motion of a pair under a law: kinetic energy and trajectory.
 
-use super::{Body, Pair, dot};
+use super::{Pair, PairBody, dot};
 use crate::law::Law;
 
 /// Rates of change of a body's position, velocity and angular velocity.
-type Rates = [f64; 5];
+type BodyRates = [f64; 5];
 
-impl Body {
+impl PairBody {
     /// Kinetic energy of motion and spin; 0 for a fixed disc.
     #[inline]
     fn kinetic_energy(&self) -> f64 {
@@ -19,8 +19,8 @@ impl Body {
 
     /// The disc after `dt` at constant rates.
     #[inline]
-    fn moved(self, &[vx, vy, ax, ay, angular_acceleration]: &Rates, dt: f64) -> Body {
-        Body {
+    fn moved(self, &[vx, vy, ax, ay, angular_acceleration]: &BodyRates, dt: f64) -> PairBody {
+        PairBody {
             position: [self.position[0] + dt * vx, self.position[1] + dt * vy],
             velocity: [self.velocity[0] + dt * ax, self.velocity[1] + dt * ay],
             omega: self.omega + dt * angular_acceleration,
@@ -33,7 +33,7 @@ impl Pair {
     /// Kinetic energy of motion and spin, with a disc's inertia ½ M R². Fixed discs count 0.
     #[inline]
     pub fn kinetic_energy(&self) -> f64 {
-        self.bodies.iter().map(Body::kinetic_energy).sum()
+        self.bodies.iter().map(PairBody::kinetic_energy).sum()
     }
 
     /// Endless iterator over the pair's states, from the present one in steps of `dt`. Uses the classical fourth-order
@@ -58,10 +58,10 @@ impl Pair {
     }
 
     #[inline]
-    fn rates<L: Law<2>>(&self, law: &L) -> [Rates; 2] {
+    fn rates<L: Law<2>>(&self, law: &L) -> [BodyRates; 2] {
         let sums = self.sums(law);
         std::array::from_fn(|i| {
-            let Body { velocity: [vx, vy], inverse_mass, radius, .. } = self.bodies[i];
+            let PairBody { velocity: [vx, vy], inverse_mass, radius, .. } = self.bodies[i];
             let [fx, fy, torque] = sums[i];
             let inverse_inertia = 2.0 * inverse_mass / (radius * radius);
             [vx, vy, fx * inverse_mass, fy * inverse_mass, torque * inverse_inertia]
@@ -69,7 +69,7 @@ impl Pair {
     }
 
     #[inline]
-    fn moved(self, rates: &[Rates; 2], dt: f64) -> Pair {
+    fn moved(self, rates: &[BodyRates; 2], dt: f64) -> Pair {
         Pair { bodies: std::array::from_fn(|i| self.bodies[i].moved(&rates[i], dt)) }
     }
 }

@@ -1,13 +1,13 @@
 //! Sample pairs for tests of laws.
 
-use super::{Body, Pair};
+use super::{Pair, PairBody};
 use crate::noise::Stream;
 use rand::RngExt;
 
 impl Pair {
     /// Two equal discs of radius and mass 1 at rest, which touch along x and overlap by 5 %.
     pub fn touching() -> Pair {
-        Pair { bodies: [Body::at(0.0, 0.0), Body::at(1.9, 0.0)] }
+        Pair { bodies: [PairBody::at(0.0, 0.0), PairBody::at(1.9, 0.0)] }
     }
 
     /// Touching discs whose opposite spins roll on each other; the second has the given radius.
@@ -24,7 +24,7 @@ impl Pair {
     /// Two equal discs about to collide, with total kinetic energy ½. Their lines of flight are `offset` apart; 0 is head-on.
     pub fn colliding(offset: f64) -> Pair {
         let speed = 0.5f64.sqrt();
-        let mut bodies = [Body::at(-1.1, 0.5 * offset), Body::at(1.1, -0.5 * offset)];
+        let mut bodies = [PairBody::at(-1.1, 0.5 * offset), PairBody::at(1.1, -0.5 * offset)];
         bodies[0].velocity[0] = speed;
         bodies[1].velocity[0] = -speed;
         Pair { bodies }
@@ -38,7 +38,7 @@ impl Pair {
         let angle = spread(std::f64::consts::TAU);
         let first = [spread(4.0), spread(4.0)];
         let second = [first[0] + distance * libm::cos(angle), first[1] + distance * libm::sin(angle)];
-        let bodies = [(first, radii[0]), (second, radii[1])].map(|(position, radius)| Body {
+        let bodies = [(first, radii[0]), (second, radii[1])].map(|(position, radius)| PairBody {
             position,
             velocity: [spread(2.0), spread(2.0)],
             omega: spread(4.0),

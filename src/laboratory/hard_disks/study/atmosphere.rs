@@ -1,10 +1,10 @@
 //! Discs under gravity above a hot floor, without a ceiling: density against height, compared with the barometric law.
 
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::Mean;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::MeanWithBar;
 use crate::study::StudyError;
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{ENGINE, RESTITUTION, TIME};
@@ -28,31 +28,31 @@ const BINS: (f64, usize) = (0.25, 32);
 struct Profile {
     name: String,
     /// Number density by height, over the barometric density at the floor.
-    densities: Vec<Mean>,
+    densities: Vec<MeanWithBar>,
     /// Mean height of the centres over kT/(m g): 1 in the barometric law.
-    mean_height: Mean,
+    mean_height: MeanWithBar,
     /// Temperature over that of the floor.
-    temperature: Mean,
+    temperature: MeanWithBar,
     /// Largest height of a disc over kT/(m g).
     highest: f64,
 }
 
 /// Simulates the gases, and counts the entries of ISO99's look-up.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let meter = Meter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let meter = ProgressMeter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
     let profiles = meter.each(&GASES, profile)?;
     let look_ups = meter.each(&SCENES, |&scene| look_up(scene))?;
     let bins = profiles.iter().flat_map(|it| it.densities.iter().enumerate().map(move |bin| (it, bin)));
     let height = |bin: usize| (bin as f64 + 0.5) * BINS.0;
-    Ok(Made::of([
-        Rows::of(&profiles)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(&profiles)
             .text("discs", |it| it.name.clone())
             .count("how many", |_| DISCS)
             .mean("mean height over kT/(m g)", 3, |it| it.mean_height)
             .mean("temperature over the floor's", 3, |it| it.temperature)
             .number("highest seen", 1, |it| it.highest)
             .frame("atmosphere", "Discs above a hot floor"),
-        Rows::of(&look_ups)
+        FrameBuilder::of(&look_ups)
             .text("scene", |(scene, ..)| *scene)
             .count("discs (entries of A, BX, BY)", |(_, [source, _], _)| source.simulation.particles().len())
             .number("entries of C and D", 0, |(.., entries)| *entries)
@@ -62,11 +62,11 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
                 if source.all() == fast.all() { "yes" } else { "no" }
             })
             .frame("look-up", "The source's look-up of occupied cells, as printed"),
-        Rows::of(bins)
+        FrameBuilder::of(bins)
             .text("discs", |(it, _)| it.name.clone())
             .number("height over kT/(m g)", 3, |(_, (bin, _))| height(*bin))
             .cell("density over the barometric one at the floor", |(_, (_, mean))| {
-                Cell::with_error(mean.value, Some(mean.bar), 4)
+                TableCell::with_error(mean.value, Some(mean.bar), 4)
             })
             .number("barometric law", 4, |(_, (bin, _))| (-height(*bin)).exp())
             .frame("heights", "Density over the height"),
@@ -75,9 +75,9 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// Runs a scene with ISO99's engine and with the fast engine; returns the entries of the former's look-up of occupied cells.
-fn look_up(scene: &'static str) -> Result<(&'static str, [Running; 2], f64), StudyError> {
+fn look_up(scene: &'static str) -> Result<(&'static str, [RunningScene; 2], f64), StudyError> {
     let run = |engine: EngineChoice| {
-        let mut gas = Running::begin(scene, &Overrides::new().set(&ENGINE, engine))?;
+        let mut gas = RunningScene::begin(scene, &Overrides::new().set(&ENGINE, engine))?;
         gas.until(Until::Time(100.0))?;
         Ok::<_, StudyError>(gas)
     };
@@ -92,7 +92,7 @@ fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
     let width = DISCS as f64 / layers;
     let place = Overrides::new().set(&SIDES, [width, 120.0]).set(&GRAVITY, [0.0, -1.0 / height]);
     let overrides = place.set(&COUNT, DISCS).set(&RESTITUTION, restitution).set(&TIME, 1e9);
-    let mut gas = Running::begin("hot-floor", &overrides)?;
+    let mut gas = RunningScene::begin("hot-floor", &overrides)?;
     // A disc falls through the height in a time of about √2 √(kT/m)/g.
     let between = height;
     let mut now = 40.0 * between;
@@ -122,9 +122,9 @@ fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
     let name = if restitution < 1.0 { format!("{layers}, e = {restitution}") } else { layers };
     Ok(Profile {
         name,
-        densities: densities.iter().map(|course| Mean::of_course(course)).collect(),
-        mean_height: Mean::of_course(&heights),
-        temperature: Mean::of_course(&temperatures),
+        densities: densities.iter().map(|course| MeanWithBar::of_course(course)).collect(),
+        mean_height: MeanWithBar::of_course(&heights),
+        temperature: MeanWithBar::of_course(&temperatures),
         highest,
     })
 }

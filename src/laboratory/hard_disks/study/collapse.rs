@@ -1,14 +1,14 @@
 //! Inelastic collapse by restitution and number of discs, in a row and in the plane: the limit of the method.
 
 use super::followed;
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::{Running, bisected, prepared};
-use crate::results::{Lab, Made, Meter, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::{RunningScene, bisected, prepared};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use rand::RngExt;
 use std::f64::consts::FRAC_PI_4;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::RESTITUTION;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, POSITIONS, SEED, VELOCITIES};
@@ -36,10 +36,10 @@ fn of_a_row(discs: f64) -> f64 {
 }
 
 /// Surveys rows and gases.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let places = DISCS.iter().flat_map(|&discs| RESTITUTIONS.map(|restitution| (discs, restitution)));
     let places: Vec<(u64, f64)> = places.collect();
-    let meter = Meter::new((ROWS.len() + places.len()) as f64, lab.progress);
+    let meter = ProgressMeter::new((ROWS.len() + places.len()) as f64, lab.progress);
     let rows = meter.each(&ROWS, |&discs| row(discs))?;
     let shares = meter.each_from_last(&places, |&(discs, restitution)| share(discs, restitution))?;
     let discs = DISCS.map(|discs| Ok(prepared("cooling-gas", &gas(discs))?.particles().grain_count()));
@@ -48,26 +48,26 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let places = gases().flat_map(|(discs, of)| of.iter().zip(RESTITUTIONS).map(move |at| (discs, at)));
     // Discs across the box, projected on one side: N d/L with N = ν L²/(π d²/4).
     let across = |discs: usize| (discs as f64 * PACKING / FRAC_PI_4).sqrt();
-    Ok(Made::of([
-        Rows::of(ROWS.iter().zip(rows))
+    Ok(FinishedItem::of([
+        FrameBuilder::of(ROWS.iter().zip(rows))
             .count("discs in the row", |(discs, _)| **discs)
             .number("collapses at", 4, |(_, [low, _])| *low)
             .number("does not at", 4, |(_, [_, high])| *high)
             .number("theory", 4, |(discs, _)| of_a_row(f64::from(**discs)))
             .frame("rows", "Discs in a row"),
-        Rows::of((30..=160).step_by(5).map(|tenths| f64::from(tenths) / 10.0))
+        FrameBuilder::of((30..=160).step_by(5).map(|tenths| f64::from(tenths) / 10.0))
             .number("discs in the row", 1, |discs| *discs)
             .number("restitution", 4, |discs| of_a_row(*discs))
             .frame("theory", "Estimate for discs in a row: tan²(π/4 (1 − 2/N))"),
-        Rows::of(gases())
+        FrameBuilder::of(gases())
             .count("discs", |(discs, _)| **discs)
             .number("N d/L", 1, |(discs, _)| across(**discs))
             .number("theory of a row", 3, |(discs, _)| of_a_row(across(**discs)))
             .cells(RESTITUTIONS.map(|e| format!("e = {e}")), |(_, collapsed)| {
-                collapsed.iter().map(|&share| Cell::Number(share, 2)).collect::<Vec<_>>()
+                collapsed.iter().map(|&share| TableCell::Number(share, 2)).collect::<Vec<_>>()
             })
             .frame("plane", "Share of the seeds that collapse"),
-        Rows::of(places)
+        FrameBuilder::of(places)
             .count("discs", |(discs, _)| **discs)
             .number("restitution", 1, |(_, (_, restitution))| *restitution)
             .number("share", 2, |(_, (share, _))| **share)
@@ -82,7 +82,7 @@ fn collapses_before(
     overrides: &Overrides,
     end: impl Fn(usize) -> Until,
 ) -> Result<bool, StudyError> {
-    let mut gas = Running::begin(preset, overrides)?;
+    let mut gas = RunningScene::begin(preset, overrides)?;
     let end = end(gas.simulation.particles().grain_count());
     Ok(followed(&mut gas, end)?.is_some())
 }
@@ -106,7 +106,7 @@ fn row(discs: u32) -> Result<[f64; 2], StudyError> {
 /// Positions and velocities of discs in a row: gaps of about a diameter, speeds inwards that increase with distance from the centre. The
 /// first start is regular and symmetric, the others are random.
 fn flying_together(discs: u32, start: u32) -> Overrides {
-    let mut stream = Stream::new(1, Purpose::Test, start);
+    let mut stream = Stream::new(1, RandomPurpose::Test, start);
     let spread = if start == 0 { 0.0 } else { 0.8 };
     let mut off = || 1.0 + spread * stream.random_range(-1.0..1.0);
     let middle = 0.5 * f64::from(discs - 1);

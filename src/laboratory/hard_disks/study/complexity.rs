@@ -1,12 +1,12 @@
 //! Cost of a collision against the number of discs: counted operations and processor time.
 
 use super::rates::{ENGINES, fluid};
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::laboratory::rates::{Case, Measured, rates};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::laboratory::rates::{MeasuredCase, RateCase, rates};
 use crate::laboratory::running::prepared;
-use crate::provenance::Machine;
-use crate::results::{Lab, Made, Size};
+use crate::provenance::MachineDescription;
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::statistics::{non_negative, slope};
 
 /// Counted operations: names and headings.
@@ -19,7 +19,7 @@ const COUNTED: [(&str, &str); 5] = [
 ];
 
 /// Measured cases of a study size.
-struct Grid {
+struct ComplexityGrid {
     /// Minimum numbers of discs.
     discs: &'static [u64],
     packing_fractions: &'static [f64],
@@ -30,13 +30,13 @@ struct Grid {
 }
 
 /// Cost of an engine with a number of discs.
-struct Cost {
+struct CollisionCost {
     engine: &'static str,
     packing_fraction: f64,
     discs: f64,
     /// Memory of a run in bytes.
     memory: f64,
-    measured: Measured,
+    measured: MeasuredCase,
 }
 
 /// Logarithm fitted to the times of an engine at a packing fraction: seconds per collision, and additional seconds per doubling of the number
@@ -58,21 +58,21 @@ impl Fit {
 }
 
 /// Measures both engines.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let grid = match size {
-        Size::Quick => Grid {
+        StudySize::Quick => ComplexityGrid {
             discs: &[1000, 10_000],
             packing_fractions: &[0.50],
             collisions: 20_000,
             most_by_reference: 10_000,
         },
-        Size::Full => Grid {
+        StudySize::Full => ComplexityGrid {
             discs: &[1000, 10_000, 100_000],
             packing_fractions: &[0.30, 0.70],
             collisions: 200_000,
             most_by_reference: 100_000,
         },
-        Size::All => Grid {
+        StudySize::All => ComplexityGrid {
             discs: &[1000, 10_000, 100_000, 1_000_000, 10_000_000],
             packing_fractions: &[0.30, 0.70],
             collisions: 1_000_000,
@@ -88,44 +88,47 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     }
     // Ten collisions per disc, to forget the initial lattice and the equal ages of all lists.
     let case = |&(engine, packing, discs): &(&str, f64, u64)| {
-        let case = Case::events("hard-disks", &fluid(engine, discs, packing), 5 * discs, grid.collisions);
+        let case = RateCase::events("hard-disks", &fluid(engine, discs, packing), 5 * discs, grid.collisions);
         case.label("engine", engine).label("ν", packing.to_string()).label("discs", discs)
     };
     let measured = rates(lab, &scenes.iter().map(case).collect::<Vec<_>>())?;
-    let cost = |((engine, packing_fraction, discs), measured): (_, Measured)| {
+    let cost = |((engine, packing_fraction, discs), measured): (_, MeasuredCase)| {
         let scene = prepared("hard-disks", &fluid(engine, discs, packing_fraction))?;
         let discs = scene.particles().grain_count() as f64;
-        Ok(Cost { engine, packing_fraction, discs, memory: scene.memory.needed as f64, measured })
+        Ok(CollisionCost { engine, packing_fraction, discs, memory: scene.memory.needed as f64, measured })
     };
-    let costs = scenes.into_iter().zip(measured).map(cost).collect::<Result<Vec<Cost>, Failure>>()?;
-    let fit = |it: &Cost| {
-        let alike =
-            |other: &&Cost| (other.engine, other.packing_fraction) == (it.engine, it.packing_fraction);
+    let costs =
+        scenes.into_iter().zip(measured).map(cost).collect::<Result<Vec<CollisionCost>, CommandFailure>>()?;
+    let fit = |it: &CollisionCost| {
+        let alike = |other: &&CollisionCost| {
+            (other.engine, other.packing_fraction) == (it.engine, it.packing_fraction)
+        };
         let seen = costs.iter().filter(alike).map(|it| [it.discs, it.measured.cost().median]);
         Fit::of(seen).at(it.discs)
     };
-    let off = |it: &Cost| (fit(it) / it.measured.cost().median).max(it.measured.cost().median / fit(it));
+    let off =
+        |it: &CollisionCost| (fit(it) / it.measured.cost().median).max(it.measured.cost().median / fit(it));
     let fast = || costs.iter().filter(|it| it.engine == ENGINES[0]);
-    let [discs, memory] =
-        [|it: &Cost| it.discs, |it: &Cost| it.memory].map(|of| fast().map(of).collect::<Vec<_>>());
+    let [discs, memory] = [|it: &CollisionCost| it.discs, |it: &CollisionCost| it.memory]
+        .map(|of| fast().map(of).collect::<Vec<_>>());
     let bytes = slope(&discs, &memory);
     let rows = COUNTED.into_iter().fold(
-        Rows::of(&costs)
+        FrameBuilder::of(&costs)
             .text("engine", |it| it.engine)
             .number("ν", 2, |it| it.packing_fraction)
             .count("discs", |it| it.discs as u64)
             .cell("time (µs)", |it| it.measured.cost().cell(1e6, 3)),
         |rows, (kind, heading)| rows.number(heading, 3, move |it| it.measured.count(kind)),
     );
-    Ok(Made::of([
+    Ok(FinishedItem::of([
         rows.number("by the fit (µs)", 3, |it| 1e6 * fit(it))
             .frame("complexity", "Of a collision: processor time and counted operations"),
-        Rows::of(caches())
+        FrameBuilder::of(caches())
             .text("cache", |(name, _)| name.clone())
             .number("bytes", 0, |(_, bytes)| *bytes)
             .number("discs", 0, |(_, size)| size / bytes)
             .frame("caches", "Discs of the fast engine that a cache holds"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .number("off a logarithm", 2, |()| costs.iter().map(off).fold(1.0, f64::max))
             .number("bytes of a disc", 0, |()| bytes)
             .frame(
@@ -143,7 +146,12 @@ fn caches() -> Vec<(String, f64)> {
         let kibibytes: f64 = size.strip_suffix('K')?.parse().ok()?;
         Some((name.to_owned(), 1024.0 * kibibytes))
     };
-    Machine::here().caches.iter().filter_map(cache).filter(|(name, _)| !name.ends_with('i')).collect()
+    MachineDescription::here()
+        .caches
+        .iter()
+        .filter_map(cache)
+        .filter(|(name, _)| !name.ends_with('i'))
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Cooling of a granular gas: Haff's law while the gas is homogeneous, and inelastic collapse at strong dissipation.
 
 use super::followed;
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Size};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::study::{StudyError, first_line};
 use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
 use stripmine_physics::method::observed::summed_up;
@@ -23,7 +23,7 @@ const COLLAPSING: [f64; 4] = [0.9, 0.5, 0.3, 0.1];
 const CURE: f64 = 1e-4;
 
 /// Cooling gas.
-struct Gas {
+struct CoolingGas {
     restitution: f64,
     /// Collisions per disc, time, and temperature over that of the first sample, for each sample.
     looks: Vec<[f64; 3]>,
@@ -33,7 +33,7 @@ struct Gas {
     by_collisions: f64,
 }
 
-impl Gas {
+impl CoolingGas {
     /// Temperature by Haff's law, over that of the first sample.
     fn haff(&self, time: f64) -> f64 {
         (1.0 + time / self.haff_time).powi(-2)
@@ -45,14 +45,14 @@ impl Gas {
 }
 
 /// Simulates the cooling gases and the gases that may collapse.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let meter = Meter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let meter = ProgressMeter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
     let gases = meter.each(&RESTITUTIONS, gas)?;
     let fates = meter.each(&COLLAPSING, fate)?;
     let looks = gases.iter().flat_map(|gas| gas.looks.iter().enumerate().skip(1).map(move |it| (gas, it)));
     let off = |temperature: f64, law: f64| 100.0 * (temperature / law - 1.0);
-    Ok(Made::of([
-        Rows::of(&gases)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(&gases)
             .number("restitution", 2, |gas| gas.restitution)
             .number("collisions of a disc", 1, |gas| gas.last()[0])
             .number("t₀", 3, |gas| gas.haff_time)
@@ -60,7 +60,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .number("off Haff by time (%)", 2, |gas| off(gas.last()[2], gas.haff(gas.last()[1])))
             .number("off Haff by collisions (%)", 2, |gas| off(gas.last()[2], gas.by_collisions))
             .frame("gases", "Temperatures beside Haff's law"),
-        Rows::of(COLLAPSING.iter().zip(&fates))
+        FrameBuilder::of(COLLAPSING.iter().zip(&fates))
             .number("restitution", 2, |(restitution, _)| **restitution)
             .number("collisions of a disc", 1, |(_, (collisions, _))| *collisions)
             .text("what was found", |(_, (_, collapse))| {
@@ -70,7 +70,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
                 collapse.as_ref().map(|(_, made_elastic)| 100.0 * made_elastic)
             })
             .frame("collapse", "Fate of very dissipative gases in 200 collisions of a disc"),
-        Rows::of(looks)
+        FrameBuilder::of(looks)
             .number("restitution", 2, |(gas, _)| gas.restitution)
             .count("look", |(_, (at, _))| *at)
             .number("time", 3, |(_, (_, look))| look[1])
@@ -81,10 +81,10 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
+fn gas(&restitution: &f64) -> Result<CoolingGas, StudyError> {
     let scene = Overrides::new().set(&COUNT, DISCS);
     let begin =
-        |restitution: f64| Running::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
+        |restitution: f64| RunningScene::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
     let names = ["time", "collisions", "temperature"];
     // The collision rate of an elastic gas, after it has forgotten the initial lattice.
     let mut elastic = begin(1.0)?;
@@ -107,7 +107,7 @@ fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
     let relative =
         |look: [f64; 3]| [2.0 * (look[1] - first[1]) / count, look[0] - first[0], look[2] / first[2]];
     let last = looks[LOOKS];
-    Ok(Gas {
+    Ok(CoolingGas {
         restitution,
         looks: looks.into_iter().map(relative).collect(),
         haff_time,
@@ -120,14 +120,14 @@ fn gas(&restitution: &f64) -> Result<Gas, StudyError> {
 fn fate(&restitution: &f64) -> Result<(f64, Option<(String, f64)>), StudyError> {
     let scene = Overrides::new().set(&COUNT, DISCS).set(&RESTITUTION, restitution);
     let begin = |contact_duration: f64| {
-        Running::begin("cooling-gas", &scene.clone().set(&CONTACT_DURATION, contact_duration))
+        RunningScene::begin("cooling-gas", &scene.clone().set(&CONTACT_DURATION, contact_duration))
     };
     let mut gas = begin(0.0)?;
     let count = gas.simulation.particles().grain_count() as f64;
     let events = (100.0 * count) as u64;
     let collapse = followed(&mut gas, Until::Events(events))?;
     let [collisions] = gas.observed(["collisions"])?;
-    let cured = |failure: method::Failure| {
+    let cured = |failure: method::PhysicsFailure| {
         let mut cured = begin(CURE)?;
         cured.events(events)?;
         let summary = cured.simulation.summary();

@@ -1,10 +1,10 @@
 //! Pressure and collision rate of the equilibrium fluid against the packing fraction.
 
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::Mean;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::MeanWithBar;
 use crate::study::StudyError;
 use std::f64::consts::PI;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
@@ -55,16 +55,16 @@ pub(super) fn compressibility(discs: f64, [virial, time]: [f64; 2], temperature:
 }
 
 /// Measures every packing fraction with a reference.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let states =
-        Meter::new(KNOWN.len() as f64, lab.progress).each_from_last(&KNOWN, |known| measured(known.0))?;
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let states = ProgressMeter::new(KNOWN.len() as f64, lab.progress)
+        .each_from_last(&KNOWN, |known| measured(known.0))?;
     let states = KNOWN.iter().zip(states);
-    let off = |mean: Mean, known: f64| {
+    let off = |mean: MeanWithBar, known: f64| {
         let off = mean.off(known).percent();
-        Cell::with_error(off.value, Some(off.bar), 2)
+        TableCell::with_error(off.value, Some(off.bar), 2)
     };
-    Ok(Made::of([
-        Rows::of(states)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(states)
             .number("ν", 2, |((nu, ..), _)| *nu)
             .mean("Z", 4, |(_, (z, ..))| *z)
             .number("Z known", 4, |((_, known, _), _)| *known)
@@ -80,7 +80,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
                 "fluid",
                 "Compressibility and collisions of a disc in a unit of time (diameter = m = kT = 1)",
             ),
-        Rows::of((1..=68).map(|at| 0.01 * f64::from(at)))
+        FrameBuilder::of((1..=68).map(|at| 0.01 * f64::from(at)))
             .number("packing fraction ν", 2, |nu| *nu)
             .number("compressibility Z", 4, |nu| luding(*nu))
             .frame("luding", "Luding's equation of state"),
@@ -89,9 +89,9 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// Compressibility, collision rate, and the relative change of the kinetic energy.
-fn measured(packing_fraction: f64) -> Result<(Mean, Mean, f64), StudyError> {
+fn measured(packing_fraction: f64) -> Result<(MeanWithBar, MeanWithBar, f64), StudyError> {
     let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
-    let mut fluid = Running::begin("hard-disks", &overrides)?;
+    let mut fluid = RunningScene::begin("hard-disks", &overrides)?;
     let discs = fluid.simulation.particles().grain_count() as f64;
     // The initial lattice melts within some tens of collisions per disc.
     fluid.events((100.0 * discs) as u64)?;
@@ -107,7 +107,7 @@ fn measured(packing_fraction: f64) -> Result<(Mean, Mean, f64), StudyError> {
         rates.push(2.0 * collisions / (discs * time * temperature.sqrt()));
         before = after;
     }
-    Ok((Mean::of_course(&pressures), Mean::of_course(&rates), before[4]))
+    Ok((MeanWithBar::of_course(&pressures), MeanWithBar::of_course(&rates), before[4]))
 }
 
 #[cfg(test)]

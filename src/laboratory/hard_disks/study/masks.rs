@@ -1,11 +1,11 @@
 //! ISO99's comparison of masks: cost of a collision by mask and packing fraction, and a fit of ISO99's cost formula.
 
 use super::rates::{ENGINES, fluid};
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::laboratory::rates::{Case, Spread, rates};
-use crate::laboratory::running::{Running, prepared};
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::laboratory::rates::{ProcessSpread, RateCase, rates};
+use crate::laboratory::running::{RunningScene, prepared};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::statistics::non_negative;
 use stripmine_kernels::mask::Mask;
 use stripmine_physics::method::hard_disks::keys::{MASK, MASKS};
@@ -25,7 +25,7 @@ const TERMS: [&str; 4] = [
 const NANO: f64 = 1e-9;
 
 /// Cost of a collision with a mask at a packing fraction.
-struct Cost {
+struct MaskCost {
     packing_fraction: f64,
     mask: &'static str,
     places: usize,
@@ -34,40 +34,40 @@ struct Cost {
     candidates: f64,
     /// Fillings of the grid per collision.
     fillings: f64,
-    seconds: Spread,
+    seconds: ProcessSpread,
 }
 
 /// Packing fraction, cheapest mask, mask chosen by `auto`, and its cost over that of the cheapest.
-type Choice = (f64, &'static str, String, f64);
+type MaskChoice = (f64, &'static str, String, f64);
 
 /// Measures every mask.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (densities, collisions): (&[f64], _) = match size {
-        Size::Quick => (&[0.10, 0.50], 3000),
-        Size::Full | Size::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], 10_000),
+        StudySize::Quick => (&[0.10, 0.50], 3000),
+        StudySize::Full | StudySize::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], 10_000),
     };
     let scene = |nu: f64, mask: &str| fluid(ENGINES[1], DISCS, nu).set(&MASK, mask);
     let masks = MASKS.iter().filter_map(|name| Some((*name, choice::mask(name)?)));
     let masks: Vec<(&str, Mask)> = masks.collect();
     let cases = densities.iter().flat_map(|&nu| {
         masks.iter().map(move |(mask, _)| {
-            let case = Case::events("hard-disks", &scene(nu, mask), 4 * DISCS, collisions);
+            let case = RateCase::events("hard-disks", &scene(nu, mask), 4 * DISCS, collisions);
             case.label("ν", nu.to_string()).label("mask", *mask)
         })
     });
     let measured = rates(lab, &cases.collect::<Vec<_>>())?;
-    let (mut costs, mut choices): (Vec<Cost>, Vec<Choice>) = (vec![], vec![]);
+    let (mut costs, mut choices): (Vec<MaskCost>, Vec<MaskChoice>) = (vec![], vec![]);
     for (&packing_fraction, measured) in densities.iter().zip(measured.chunks_exact(masks.len())) {
-        let system = Running::timed("hard-disks", &scene(packing_fraction, "min"))?;
+        let system = RunningScene::timed("hard-disks", &scene(packing_fraction, "min"))?;
         let occupancy = summed_up(&system.simulation.summary(), "occupancy")?;
         let discs = system.simulation.particles().grain_count() as f64;
         let here = masks.iter().zip(measured).map(|((mask, offsets), measured)| {
             let places = offsets.offsets().len();
             let candidates = places as f64 * occupancy;
             let fillings = measured.count("cell_updates") / discs;
-            Cost { packing_fraction, mask, places, discs, candidates, fillings, seconds: measured.cost() }
+            MaskCost { packing_fraction, mask, places, discs, candidates, fillings, seconds: measured.cost() }
         });
-        let here: Vec<Cost> = here.collect();
+        let here: Vec<MaskCost> = here.collect();
         let auto = prepared("hard-disks", &scene(packing_fraction, "auto"))?.settings;
         let auto = auto["mask"].as_str().unwrap_or_default().to_owned();
         let cheapest = here.iter().min_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
@@ -77,18 +77,18 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
         }
         costs.extend(here);
     }
-    Ok(Made::of(frames(&costs, &choices, &masks)).with_seeds([1]))
+    Ok(FinishedItem::of(frames(&costs, &choices, &masks)).with_seeds([1]))
 }
 
-fn frames(costs: &[Cost], choices: &[Choice], masks: &[(&str, Mask)]) -> [Frame; 5] {
+fn frames(costs: &[MaskCost], choices: &[MaskChoice], masks: &[(&str, Mask)]) -> [ResultFrame; 5] {
     let constants = fit(costs);
-    let fitted = |cost: &Cost| terms(cost).iter().zip(constants).map(|(term, it)| term * it).sum::<f64>();
-    let ratio = |cost: &Cost| fitted(cost) / cost.seconds.median;
-    let off = |cost: &Cost| ratio(cost).max(ratio(cost).recip());
+    let fitted = |cost: &MaskCost| terms(cost).iter().zip(constants).map(|(term, it)| term * it).sum::<f64>();
+    let ratio = |cost: &MaskCost| fitted(cost) / cost.seconds.median;
+    let off = |cost: &MaskCost| ratio(cost).max(ratio(cost).recip());
     let squares: f64 = costs.iter().map(|cost| (ratio(cost) - 1.0).powi(2)).sum();
     let farthest = costs.iter().max_by(|a, b| off(a).total_cmp(&off(b)));
     [
-        Rows::of(costs)
+        FrameBuilder::of(costs)
             .number("ν", 2, |cost| cost.packing_fraction)
             .text("mask", |cost| cost.mask)
             .count("places", |cost| cost.places)
@@ -96,22 +96,22 @@ fn frames(costs: &[Cost], choices: &[Choice], masks: &[(&str, Mask)]) -> [Frame;
             .number("by the formula (µs)", 2, |cost| 1e6 * fitted(cost))
             .number("fillings in a thousand collisions", 3, |cost| 1e3 * cost.fillings)
             .frame("masks", "Processor time of a collision"),
-        Rows::of(TERMS.into_iter().zip(constants))
+        FrameBuilder::of(TERMS.into_iter().zip(constants))
             .text("of what", |(term, _)| *term)
             .number("nanoseconds", 2, |(_, constant)| constant / NANO)
             .frame("constants", "ISO99's formula of the cost, fitted"),
-        Rows::of(choices)
+        FrameBuilder::of(choices)
             .number("ν", 2, |(nu, ..)| *nu)
             .text("cheapest mask", |(_, cheapest, ..)| *cheapest)
             .text("choice of auto", |(.., auto, _)| auto)
             .number("cost of auto over the cheapest", 2, |(.., ratio)| *ratio)
             .frame("choices", "Cheapest mask, and the choice of `mask = \"auto\"`"),
-        Rows::of(masks)
+        FrameBuilder::of(masks)
             .text("mask", |(name, _)| *name)
             .count("places", |(_, mask)| mask.offsets().len())
             .number("distance", 4, |(_, mask)| f64::from(mask.reach_squared()).sqrt())
             .frame("reach", "Smallest distance to the rim of a mask (cells)"),
-        Rows::of(farthest)
+        FrameBuilder::of(farthest)
             .number("off the formula", 2, |cost| off(cost))
             .number("ν", 2, |cost| cost.packing_fraction)
             .text("mask", |cost| cost.mask)
@@ -121,14 +121,14 @@ fn frames(costs: &[Cost], choices: &[Choice], masks: &[(&str, Mask)]) -> [Frame;
 }
 
 /// Factors of the fitted constants.
-fn terms(cost: &Cost) -> [f64; 4] {
+fn terms(cost: &MaskCost) -> [f64; 4] {
     let filled = cost.discs * cost.fillings;
     [1.0, cost.candidates, filled, cost.candidates * filled]
 }
 
 /// Non-negative constants from least squares of the relative errors.
-fn fit(costs: &[Cost]) -> [f64; 4] {
-    let row = |cost: &Cost| (terms(cost).map(|term| NANO * term / cost.seconds.median), 1.0);
+fn fit(costs: &[MaskCost]) -> [f64; 4] {
+    let row = |cost: &MaskCost| (terms(cost).map(|term| NANO * term / cost.seconds.median), 1.0);
     non_negative(&costs.iter().map(row).collect::<Vec<_>>()).map(|constant| NANO * constant)
 }
 
@@ -142,9 +142,9 @@ mod tests {
         let constants = [1e-7, 2e-9, 3e-8, 3e-9];
         let made = [(8.0, 0.01), (13.0, 0.004), (30.0, 0.001), (90.0, 0.0003), (5.0, 0.1), (70.0, 0.02)];
         let costs = made.map(|(candidates, fillings)| {
-            let seconds = Spread { median: 0.0, range: [0.0; 2] };
+            let seconds = ProcessSpread { median: 0.0, range: [0.0; 2] };
             let (packing_fraction, mask, places, discs) = (0.5, "", 0, 100.0);
-            let mut cost = Cost { packing_fraction, mask, places, discs, candidates, fillings, seconds };
+            let mut cost = MaskCost { packing_fraction, mask, places, discs, candidates, fillings, seconds };
             cost.seconds.median = terms(&cost).iter().zip(constants).map(|(term, it)| term * it).sum();
             cost
         });

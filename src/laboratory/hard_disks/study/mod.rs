@@ -11,12 +11,12 @@ pub(crate) mod rates;
 pub(crate) mod soft_hard;
 pub(crate) mod structure;
 
-use crate::laboratory::running::Running;
+use crate::laboratory::running::RunningScene;
 use stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE;
-use stripmine_physics::method::{Failure, Until};
+use stripmine_physics::method::{PhysicsFailure, Until};
 
 /// Advances a gas to a moment or to its inelastic collapse; returns the collapse.
-fn followed(gas: &mut Running, end: Until) -> Result<Option<Failure>, Failure> {
+fn followed(gas: &mut RunningScene, end: Until) -> Result<Option<PhysicsFailure>, PhysicsFailure> {
     match gas.until(end) {
         Ok(()) => Ok(None),
         Err(failure) if failure.kind == INELASTIC_COLLAPSE => Ok(Some(failure)),

@@ -2,12 +2,12 @@
 
 use super::fluid::{Z_AT_HALF, compressibility};
 use super::rates::{ENGINES, fluid};
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::laboratory::rates::{Case, rates};
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::Spread;
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::laboratory::rates::{RateCase, rates};
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::RunSpread;
 use crate::study::StudyError;
 use stripmine_physics::scene::SEED;
 
@@ -23,7 +23,7 @@ const FORGOTTEN: u64 = 50;
 const SEEDS: u64 = 8;
 
 /// Results of an engine with a number of discs.
-struct Way {
+struct EngineErrors {
     engine: &'static str,
     asked: u64,
     discs: usize,
@@ -32,49 +32,49 @@ struct Way {
 }
 
 /// Runs both engines with every number of discs and every seed, and measures their rates.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let runs = DISCS.iter().flat_map(|&discs| ENGINES.map(|engine| (discs, engine)));
     let runs: Vec<(u64, &str, u64)> =
         runs.flat_map(|(discs, engine)| (1..=SEEDS).map(move |seed| (discs, engine, seed))).collect();
     let half = |share: f64| (lab.progress)(0.5 * share);
-    let errors = Meter::new(runs.len() as f64, &half).each_from_last(&runs, errors)?;
+    let errors = ProgressMeter::new(runs.len() as f64, &half).each_from_last(&runs, errors)?;
     let of_ways = runs.chunks(SEEDS as usize).zip(errors.chunks(SEEDS as usize));
-    let ways: Vec<Way> = of_ways
-        .map(|(runs, errors)| Way {
+    let ways: Vec<EngineErrors> = of_ways
+        .map(|(runs, errors)| EngineErrors {
             engine: runs[0].1,
             asked: runs[0].0,
             discs: errors[0].0,
             errors: errors.iter().map(|it| it.1.clone()).collect(),
         })
         .collect();
-    let case = |way: &Way| {
+    let case = |way: &EngineErrors| {
         let scene = fluid(way.engine, way.asked, PACKING);
-        let case = Case::events("hard-disks", &scene, FORGOTTEN * way.asked, LOOKS[4]);
+        let case = RateCase::events("hard-disks", &scene, FORGOTTEN * way.asked, LOOKS[4]);
         case.label("engine", way.engine).label("discs", way.asked)
     };
     let half = |share: f64| (lab.progress)(0.5 + 0.5 * share);
-    let lab = Lab { progress: &half, program: lab.program.clone() };
+    let lab = StudyEnvironment { progress: &half, program: lab.program.clone() };
     let rates = rates(&lab, &ways.iter().map(case).collect::<Vec<_>>())?;
     let looks = ways.iter().zip(&rates).flat_map(|it| (0..LOOKS.len()).map(move |look| (it, look)));
     let of_seeds =
-        |way: &Way, look: usize| way.errors.iter().map(|it| 100.0 * it[look]).collect::<Vec<f64>>();
+        |way: &EngineErrors, look: usize| way.errors.iter().map(|it| 100.0 * it[look]).collect::<Vec<f64>>();
     let square =
         |values: Vec<f64>| (values.iter().map(|it| it * it).sum::<f64>() / values.len() as f64).sqrt();
-    Ok(Made::of([Rows::of(looks)
+    Ok(FinishedItem::of([FrameBuilder::of(looks)
         .text("engine and discs", |((way, _), _)| format!("{}, N = {}", way.engine, way.discs))
         .count("collisions", |(_, look)| LOOKS[*look])
         .cell("processor time (s)", |((_, rate), look)| rate.cost().cell(LOOKS[*look] as f64, 3))
         .cell("million collisions/s", |((_, rate), _)| rate.rate().cell(1e-6, 3))
         .number("error of Z (%)", 3, |((way, _), look)| square(of_seeds(way, *look)))
-        .number("mean error (%)", 3, |((way, _), look)| Spread::of(&of_seeds(way, *look)).mean)
-        .number("its standard error (%)", 3, |((way, _), look)| Spread::of(&of_seeds(way, *look)).error)
+        .number("mean error (%)", 3, |((way, _), look)| RunSpread::of(&of_seeds(way, *look)).mean)
+        .number("its standard error (%)", 3, |((way, _), look)| RunSpread::of(&of_seeds(way, *look)).error)
         .frame("precision", "Errors of Z after growing numbers of collisions")])
     .with_seeds(1..=SEEDS))
 }
 
 /// Number of discs, and relative errors of the compressibility of a run.
 fn errors(&(discs, engine, seed): &(u64, &str, u64)) -> Result<(usize, Vec<f64>), StudyError> {
-    let mut system = Running::begin("hard-disks", &fluid(engine, discs, PACKING).set(&SEED, seed))?;
+    let mut system = RunningScene::begin("hard-disks", &fluid(engine, discs, PACKING).set(&SEED, seed))?;
     let discs = system.simulation.particles().grain_count();
     system.events(FORGOTTEN * discs as u64)?;
     let names = ["time", "virial", "temperature"];

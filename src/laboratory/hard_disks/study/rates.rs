@@ -1,10 +1,10 @@
 //! Collisions per second of the fast engine and of ISO99's, by packing fraction and number of discs.
 
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::laboratory::rates::{Case, rates};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::laboratory::rates::{RateCase, rates};
 use crate::laboratory::running::prepared;
-use crate::results::{Lab, Made, Size};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use stripmine_physics::method::hard_disks::keys::ENGINE;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
@@ -22,10 +22,10 @@ pub(super) fn fluid(engine: &str, discs: u64, packing_fraction: f64) -> Override
 }
 
 /// Measures both engines.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (sizes, collisions): (&[u64], _) = match size {
-        Size::Quick => (&[2500], 50_000),
-        Size::Full | Size::All => (&[2500, 250_000], 100_000),
+        StudySize::Quick => (&[2500], 50_000),
+        StudySize::Full | StudySize::All => (&[2500, 250_000], 100_000),
     };
     let scenes = sizes.iter().flat_map(|&discs| PACKING_FRACTIONS.map(|packing| (discs, packing)));
     let scenes: Vec<(u64, f64)> = scenes.collect();
@@ -33,7 +33,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let cases = scenes.iter().flat_map(|&(discs, packing)| {
         let warm_up = (10 * discs).min(2 * collisions);
         ENGINES.map(|engine| {
-            let case = Case::events("hard-disks", &fluid(engine, discs, packing), warm_up, collisions);
+            let case = RateCase::events("hard-disks", &fluid(engine, discs, packing), warm_up, collisions);
             case.label("discs", discs).label("ν", packing.to_string()).label("engine", engine)
         })
     });
@@ -42,13 +42,13 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let facts = |engine: &str, &(discs, packing): &(u64, f64)| {
         let scene = prepared("hard-disks", &fluid(engine, discs, packing))?;
         let mask = scene.settings["mask"].as_str().unwrap_or_default().to_owned();
-        Ok::<_, Failure>((scene.particles().grain_count() as f64, scene.memory.needed as f64, mask))
+        Ok::<_, CommandFailure>((scene.particles().grain_count() as f64, scene.memory.needed as f64, mask))
     };
     let facts = scenes.iter().map(|it| Ok([facts(ENGINES[0], it)?, facts(ENGINES[1], it)?]));
-    let facts = facts.collect::<Result<Vec<_>, Failure>>()?;
+    let facts = facts.collect::<Result<Vec<_>, CommandFailure>>()?;
     let pairs = measured.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]);
     let source = |discs: f64| SOURCE.into_iter().find(|(known, _)| (discs / known - 1.0).abs() < 0.1);
-    Ok(Made::of([Rows::of(scenes.iter().zip(pairs).zip(&facts))
+    Ok(FinishedItem::of([FrameBuilder::of(scenes.iter().zip(pairs).zip(&facts))
         .number("discs", 0, |(_, [fast, _])| fast.0)
         .number("ν", 2, |(((_, packing), _), _)| *packing)
         .cell("fast (million/s)", |((_, [fast, _]), _)| fast.rate().cell(1e-6, 3))

@@ -1,19 +1,19 @@
 //! Soft discs compared with hard discs: one scene with lattice MD at increasing stiffness, and with hard discs.
 
 use super::fluid::{collision_rate, compressibility, luding};
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Progress, Size};
-use crate::statistics::{Mean, median};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, Progress, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::{MeanWithBar, median};
 use crate::study::StudyError;
-use stripmine_kernels::law::spring::{Impact, Spring};
+use stripmine_kernels::law::spring::{HeadOnImpact, Spring};
 use stripmine_physics::method::lattice_md::keys::{FRICTION, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use stripmine_physics::method::{Until, hard_disks};
 use stripmine_physics::scene::{COUNT, DT, Overrides, PACKING_FRACTION, SEED, STEPS, TEMPERATURE};
 
 /// Scene and size of the comparison. Diameter, mass and kT are 1.
-pub(crate) struct Question {
+pub(crate) struct SoftHardComparison {
     /// Minimum number of discs.
     pub discs: u64,
     /// Area of the discs over that of the box.
@@ -28,9 +28,9 @@ pub(crate) struct Question {
     pub time: f64,
 }
 
-impl Question {
+impl SoftHardComparison {
     /// Comparison in the report.
-    pub(crate) const REPORT: Question = Question {
+    pub(crate) const REPORT: SoftHardComparison = SoftHardComparison {
         discs: 500,
         packing_fraction: 0.5,
         restitution: 0.9,
@@ -50,49 +50,56 @@ const COOLING: f64 = 10.0;
 const GAMMA: f64 = 0.887_263_817_503_075;
 
 /// Results of discs of one stiffness, or of hard discs.
-struct Model {
-    soft: Option<Soft>,
+struct DiscModel {
+    soft: Option<SoftDiscs>,
     /// Depth of a head-on contact with energy kT (diameters).
     depth: f64,
     /// Compressibility of the elastic fluid.
-    compressibility: Mean,
+    compressibility: MeanWithBar,
     /// Compressibility of hard discs of the effective diameter.
     effective: f64,
     /// Temperature of the cooled gas over its initial value.
-    cooled: Mean,
+    cooled: MeanWithBar,
     /// Processor seconds per unit of time of the elastic fluid.
     cost: f64,
 }
 
 /// Makes the item of the report.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let question = match size {
-        Size::Quick => {
-            Question { discs: 200, stiffnesses: &[1e3, 1e4, 1e5], seeds: 2, time: 4.0, ..Question::REPORT }
-        }
-        Size::Full | Size::All => Question::REPORT,
+        StudySize::Quick => SoftHardComparison {
+            discs: 200,
+            stiffnesses: &[1e3, 1e4, 1e5],
+            seeds: 2,
+            time: 4.0,
+            ..SoftHardComparison::REPORT
+        },
+        StudySize::Full | StudySize::All => SoftHardComparison::REPORT,
     };
     soft_hard(&question, lab.progress)
 }
 
 /// Runs the soft models from the softest to the stiffest, then the hard model, with every seed.
-pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<Made, Failure> {
+pub(crate) fn soft_hard(
+    question: &SoftHardComparison,
+    progress: Progress<'_>,
+) -> Result<FinishedItem, CommandFailure> {
     // From the collision rate at constant temperature.
     let cooling_time = COOLING / collision_rate(luding(question.packing_fraction));
     // Mean normal speed of impacts at kT = m = 1: √π.
     let impact_speed = std::f64::consts::PI.sqrt();
     let seeds: Vec<u64> = (1..=question.seeds).collect();
     let kinds: Vec<Option<f64>> = question.stiffnesses.iter().copied().map(Some).chain([None]).collect();
-    let meter = Meter::new((kinds.len() * seeds.len()) as f64, progress);
+    let meter = ProgressMeter::new((kinds.len() * seeds.len()) as f64, progress);
     let (mut models, mut discs) = (vec![], 0);
     for stiffness in kinds {
-        let kind = Discs(stiffness.map(|it| Soft::new(it, question.restitution, impact_speed)));
+        let kind = DiscKind(stiffness.map(|it| SoftDiscs::new(it, question.restitution, impact_speed)));
         let runs = meter.each(&seeds, |&seed| kind.run(question, seed, cooling_time))?;
         discs = runs[0].discs;
-        let over = |of: fn(&One) -> f64| Mean::of(&runs.iter().map(of).collect::<Vec<_>>());
+        let over = |of: fn(&SeedResult) -> f64| MeanWithBar::of(&runs.iter().map(of).collect::<Vec<_>>());
         let depth = stiffness.map_or(0.0, |stiffness| (2.5 / stiffness).powf(0.4));
         let diameter = 1.0 - GAMMA * depth;
-        models.push(Model {
+        models.push(DiscModel {
             depth,
             compressibility: over(|one| one.compressibility),
             effective: luding(question.packing_fraction * diameter * diameter),
@@ -102,18 +109,18 @@ pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<M
         });
     }
     let hard = &models[models.len() - 1];
-    let off = |model: &Model| {
-        let Mean { value, bar } = hard.compressibility;
+    let off = |model: &DiscModel| {
+        let MeanWithBar { value, bar } = hard.compressibility;
         let off = model.compressibility.off(value);
-        let off = Mean { bar: off.bar.hypot(bar / value), ..off }.percent();
-        Cell::with_error(off.value, Some(off.bar), 2)
+        let off = MeanWithBar { bar: off.bar.hypot(bar / value), ..off }.percent();
+        TableCell::with_error(off.value, Some(off.bar), 2)
     };
     let ends = [question.stiffnesses[0], question.stiffnesses[question.stiffnesses.len() - 1]];
-    Ok(Made::of([
-        Rows::of(&models)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(&models)
             .cell("stiffness of a contact", |it| match &it.soft {
-                Some(soft) => Cell::Short(soft.stiffness),
-                None => Cell::from("hard"),
+                Some(soft) => TableCell::Short(soft.stiffness),
+                None => TableCell::from("hard"),
             })
             .number("damping γ_N", 3, |it| it.soft.as_ref().map(|it| it.damping))
             .number("step", 6, |it| it.soft.as_ref().map(|it| it.step))
@@ -123,13 +130,13 @@ pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<M
             .mean("T/T₀ cooled", 4, |it| it.cooled)
             .number("cost (ms for a unit of time)", 2, |it| 1e3 * it.cost)
             .frame("soft_hard", "Soft discs and hard ones"),
-        Rows::of(ends)
+        FrameBuilder::of(ends)
             .short("stiffness of a contact", |end| *end)
             .number("Z", 4, |_| hard.compressibility.value)
             .number("T/T₀ cooled", 4, |_| hard.cooled.value)
             .number("cost", 6, |_| hard.cost)
             .frame("hard", "Hard discs, at the ends of the range of stiffnesses"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .count("discs", |()| discs)
             .number("packing fraction", 2, |()| question.packing_fraction)
             .number("restitution", 2, |()| question.restitution)
@@ -145,15 +152,15 @@ pub(crate) fn soft_hard(question: &Question, progress: Progress<'_>) -> Result<M
 }
 
 /// Parameters of soft discs.
-struct Soft {
+struct SoftDiscs {
     stiffness: f64,
     damping: f64,
     step: f64,
 }
 
-impl Soft {
+impl SoftDiscs {
     /// Finds the damping that gives a restitution at a speed.
-    fn new(stiffness: f64, restitution: f64, speed: f64) -> Soft {
+    fn new(stiffness: f64, restitution: f64, speed: f64) -> SoftDiscs {
         let (mut low, mut high) = (0.0, 1.0);
         let is_too_elastic = |damping: f64| impact(stiffness, damping, speed).restitution > restitution;
         while is_too_elastic(high) {
@@ -164,23 +171,28 @@ impl Soft {
             *(if is_too_elastic(middle) { &mut low } else { &mut high }) = middle;
         }
         let duration = impact(stiffness, 0.0, speed).duration;
-        Soft { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT }
+        SoftDiscs { stiffness, damping: 0.5 * (low + high), step: duration / STEPS_A_CONTACT }
     }
 }
 
 /// Discs of the scene: soft, or hard if `None`.
-struct Discs(Option<Soft>);
+struct DiscKind(Option<SoftDiscs>);
 
 /// Results of one seed.
-struct One {
+struct SeedResult {
     discs: usize,
     compressibility: f64,
     cooled: f64,
     cost: f64,
 }
 
-impl Discs {
-    fn begin(&self, question: &Question, seed: u64, elastic: bool) -> Result<Running, StudyError> {
+impl DiscKind {
+    fn begin(
+        &self,
+        question: &SoftHardComparison,
+        seed: u64,
+        elastic: bool,
+    ) -> Result<RunningScene, StudyError> {
         let scene = Overrides::new()
             .set(&COUNT, question.discs)
             .set(&PACKING_FRACTION, question.packing_fraction)
@@ -189,13 +201,13 @@ impl Discs {
         match &self.0 {
             None => {
                 let restitution = if elastic { 1.0 } else { question.restitution };
-                Running::begin("hard-disks", &scene.set(&hard_disks::keys::RESTITUTION, restitution))
+                RunningScene::begin("hard-disks", &scene.set(&hard_disks::keys::RESTITUTION, restitution))
             }
             Some(soft) => {
                 let damping = if elastic { 0.0 } else { soft.damping };
                 let law = scene.set(&STIFFNESS, soft.stiffness).set(&NORMAL_DAMPING, damping);
                 let law = law.set(&SHEAR_DAMPING, 0.0).set(&FRICTION, 0.0);
-                Running::begin("bench", &law.set(&DT, soft.step).set(&STEPS, 1_u64))
+                RunningScene::begin("bench", &law.set(&DT, soft.step).set(&STEPS, 1_u64))
             }
         }
     }
@@ -205,7 +217,12 @@ impl Discs {
         self.0.as_ref().map_or(Until::Time(time), |it| Until::Steps((time / it.step).round() as u64))
     }
 
-    fn run(&self, question: &Question, seed: u64, cooling_time: f64) -> Result<One, StudyError> {
+    fn run(
+        &self,
+        question: &SoftHardComparison,
+        seed: u64,
+        cooling_time: f64,
+    ) -> Result<SeedResult, StudyError> {
         let mut fluid = self.begin(question, seed, true)?;
         let (discs, area) = (fluid.simulation.particles().grain_count(), fluid.domain.area());
         // The initial lattice melts.
@@ -213,7 +230,7 @@ impl Discs {
         fluid.until(self.at(melted))?;
         let begun = cpu_time::ThreadTime::now();
         let mut pressure = 0.0;
-        let virial = |fluid: &Running| match self.0 {
+        let virial = |fluid: &RunningScene| match self.0 {
             None => fluid.observed(["virial"]).map(|[virial]| virial),
             Some(_) => Ok(0.0),
         };
@@ -239,12 +256,12 @@ impl Discs {
         let [start] = gas.observed(["temperature"])?;
         gas.until(self.at(cooling_time))?;
         let [end] = gas.observed(["temperature"])?;
-        Ok(One { discs, compressibility, cooled: end / start, cost })
+        Ok(SeedResult { discs, compressibility, cooled: end / start, cost })
     }
 }
 
 /// Head-on impact of two discs of mass 1 (effective mass ½): Hertz law with damping, without attraction.
-fn impact(stiffness: f64, damping: f64, speed: f64) -> Impact {
+fn impact(stiffness: f64, damping: f64, speed: f64) -> HeadOnImpact {
     Spring::Hertz.impact(2.0 * stiffness, damping, speed)
 }
 
@@ -255,10 +272,10 @@ mod tests {
     /// Without damping the restitution is 1 and the duration 2.94 δ/v with the depth δ = (5 μ v²/(4 k))^{2/5}; damping lowers the restitution.
     #[test]
     fn impacts_follow_hertz() {
-        let Impact { restitution, duration } = impact(1e4, 0.0, 1.5);
+        let HeadOnImpact { restitution, duration } = impact(1e4, 0.0, 1.5);
         let depth = (1.25 * 0.5 * 1.5 * 1.5 / 1e4_f64).powf(0.4);
         assert!((restitution - 1.0).abs() < 1e-3 && (duration / (2.943 * depth / 1.5) - 1.0).abs() < 2e-3);
-        let Soft { damping, .. } = Soft::new(1e4, 0.8, 1.5);
+        let SoftDiscs { damping, .. } = SoftDiscs::new(1e4, 0.8, 1.5);
         assert!((impact(1e4, damping, 1.5).restitution - 0.8).abs() < 1e-3);
     }
 }

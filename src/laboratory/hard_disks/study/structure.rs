@@ -1,18 +1,18 @@
 //! Order, free times and speeds of hard discs on both sides of melting.
 
 use super::fluid::compressibility;
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::laboratory::running::Running;
-use crate::report::figure::{Drawing, Guide, Picture, Shape, Tint};
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::Mean;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::laboratory::running::RunningScene;
+use crate::report::figure::{Drawing, DrawnShape, Guide, Picture, Tint};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::MeanWithBar;
 use crate::study::StudyError;
 use std::f64::consts::{PI, TAU};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::hard_disks::keys::COLLISION_LOG;
-use stripmine_physics::method::{METHODS, Purpose, Until, load};
-use stripmine_physics::near::Near;
+use stripmine_physics::method::{METHODS, StartPurpose, Until, load};
+use stripmine_physics::near::NeighbourSearch;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Packing fractions: dilute gas, fluid, between fluid and crystal, crystal.
@@ -37,7 +37,7 @@ struct Structure {
     packing_fraction: f64,
     discs: usize,
     /// Global bond-orientational order |Σ ψ₆|/N, and mean |ψ₆| of a disc.
-    order: [Mean; 2],
+    order: [MeanWithBar; 2],
     /// Pair correlation in each bin of distances.
     correlation: Vec<f64>,
     /// Pair correlation at contact from the virial, (Z − 1)/(2 ν).
@@ -53,26 +53,27 @@ struct Structure {
 }
 
 /// Simulates every packing fraction, starting from a crystal with equal speeds.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let all = Meter::new(PACKING_FRACTIONS.len() as f64, lab.progress).each(&PACKING_FRACTIONS, structure)?;
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let all = ProgressMeter::new(PACKING_FRACTIONS.len() as f64, lab.progress)
+        .each(&PACKING_FRACTIONS, structure)?;
     let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute(middle(TIMES, bin))).collect();
     let bins = |count: usize| all.iter().flat_map(move |it| (0..count).map(move |bin| (it, bin)));
     let off = all[0].free_times.iter().zip(&dilute).map(|(seen, theory)| (seen - theory).abs());
     let off = off.fold(0.0, f64::max);
-    let made = Made::of([
+    let made = FinishedItem::of([
         table(&all),
-        Rows::of(bins(DISTANCES.1))
+        FrameBuilder::of(bins(DISTANCES.1))
             .number("ν", 2, |(it, _)| it.packing_fraction)
             .number("distance over the diameter", 2, |(_, bin)| 1.0 + middle(DISTANCES, *bin))
             .number("pair correlation g", 3, |(it, bin)| it.correlation[*bin])
             .frame("correlation", "Pair correlation"),
-        Rows::of(bins(TIMES.1))
+        FrameBuilder::of(bins(TIMES.1))
             .number("ν", 2, |(it, _)| it.packing_fraction)
             .number("free time over its mean", 2, |(_, bin)| middle(TIMES, *bin))
             .number("density", 3, |(it, bin)| it.free_times[*bin])
             .number("density of a dilute gas", 3, |(_, bin)| dilute[*bin])
             .frame("times", "Probability density of free times"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .count("discs", |()| all[0].discs)
             .number("largest difference of free times", 3, |()| off)
             .frame("summary", "Number of discs, and free times of the gas beside theory"),
@@ -83,8 +84,8 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     Ok(made.with_seeds([1]))
 }
 
-fn table(all: &[Structure]) -> Frame {
-    Rows::of(all)
+fn table(all: &[Structure]) -> ResultFrame {
+    FrameBuilder::of(all)
         .number("ν", 2, |it| it.packing_fraction)
         .mean("|Ψ₆| of all", 3, |it| it.order[0])
         .number("mean |ψ₆|", 3, |it| it.order[1].value)
@@ -107,7 +108,8 @@ fn picture(domain: Domain, discs: Vec<([f64; 2], f64)>) -> Picture {
     let sides = domain.lengths().map(|side| side.min(SHOWN));
     let shown =
         discs.into_iter().filter(|(centre, _)| centre.iter().zip(sides).all(|(x, side)| *x < side + 0.5));
-    let disc = |(centre, along)| Shape::Disc { centre, radius: 0.5, tint: Tint::Shade(0.5 * (along + 1.0)) };
+    let disc =
+        |(centre, along)| DrawnShape::Disc { centre, radius: 0.5, tint: Tint::Shade(0.5 * (along + 1.0)) };
     Picture::Drawing(Drawing {
         window: [[0.0; 2], sides],
         width: 640.0,
@@ -127,10 +129,10 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
         let angle = TAU * (f64::from(turn) * 0.618_033_988_749_895).fract();
         disc.velocity = [2f64.sqrt() * angle.cos(), 2f64.sqrt() * angle.sin(), 0.0];
     }
-    let mut running = Running::of(method, &scene.model.started_from(start), Purpose::Run)?;
+    let mut running = RunningScene::of(method, &scene.model.started_from(start), StartPurpose::Run)?;
     let count = running.simulation.particles().grain_count();
     let maxwell =
-        |running: &Running| Ok::<_, StudyError>(running.maxwell(running.observed(["temperature"])?[0]));
+        |running: &RunningScene| Ok::<_, StudyError>(running.maxwell(running.observed(["temperature"])?[0]));
     let begin = maxwell(&running)?;
     for _ in 0..SETTLING {
         running.events(count as u64 / 2)?;
@@ -170,7 +172,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     Ok(Structure {
         packing_fraction,
         discs: count,
-        order: order.map(|course| Mean::of_course(&course)),
+        order: order.map(|course| MeanWithBar::of_course(&course)),
         correlation: (0..DISTANCES.1).map(|bin| pairs[bin] / ideal(bin)).collect(),
         contact: (compressibility - 1.0) / (2.0 * packing_fraction),
         free_times: free_times(&running.simulation.take_events(), free_time),
@@ -185,7 +187,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
 fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     // Six neighbours are within reach even in a gas.
     let reach = 3.0 * (domain.area() / places.len() as f64).sqrt();
-    let near = Near::among(domain, places.iter().copied(), reach);
+    let near = NeighbourSearch::among(domain, places.iter().copied(), reach);
     let of = |own: &[f64; 2]| {
         let mut around: Vec<[f64; 2]> = near
             .of(*own)
@@ -207,7 +209,7 @@ fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Counts every pair within reach in the bin of its distance.
 fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
     let reach = 1.0 + DISTANCES.0 * DISTANCES.1 as f64;
-    let near = Near::among(domain, places.iter().copied(), reach);
+    let near = NeighbourSearch::among(domain, places.iter().copied(), reach);
     for (own, number) in places.iter().zip(0..) {
         for (_, other) in near.of(*own).filter(|(other, _)| *other > number) {
             let bin = ((domain.distance(*own, other) - 1.0) / DISTANCES.0).max(0.0) as usize;

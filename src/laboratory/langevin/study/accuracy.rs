@@ -1,11 +1,11 @@
 //! Step bias: energy, pressure and temperatures of a Lennard-Jones fluid against dt, with both integrators.
 
 use super::PARTS;
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::{Mean, student};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::{MeanWithBar, student};
 use crate::study::StudyError;
 use std::time::Instant;
 use stripmine_physics::domain::Domain;
@@ -29,35 +29,35 @@ const LEAST: usize = 3;
 const ORDER_WITHIN: f64 = 0.5;
 
 /// Measurements of the fluid with one scheme and step.
-struct Fluid {
+struct FluidAtStep {
     scheme: SchemeKind,
     dt: f64,
     /// Pair energy per particle (energy).
-    potential: Mean,
+    potential: MeanWithBar,
     /// Pressure (force/length).
-    pressure: Mean,
+    pressure: MeanWithBar,
     /// Observed kinetic temperature over that of the bath; with baoab it is sampled after the bath.
-    temperature: Mean,
+    temperature: MeanWithBar,
     /// Temperature of the velocities at the end of the step.
-    at_end: Mean,
+    at_end: MeanWithBar,
     /// Difference of the two, sample by sample: with baoab the cooling of the last half kick.
-    cooling: Mean,
+    cooling: MeanWithBar,
     /// ⟨F²⟩/⟨∇²U⟩, which is kT for Boltzmann-distributed positions.
-    configurational: Mean,
+    configurational: MeanWithBar,
     /// ⟨∇²U⟩ per particle and dimension (energy/length²).
-    curvature: Mean,
+    curvature: MeanWithBar,
     /// Wall seconds per unit of time.
     cost: f64,
     /// True if no particle was lost.
     is_whole: bool,
 }
 
-impl Fluid {
+impl FluidAtStep {
     /// Theoretical cooling: dt² kT⟨∇²U⟩/(4 m) with baoab, zero with LAN17's scheme, whose velocities have kT at the end of the step (exactly in
     /// a harmonic trap).
-    fn foreseen(&self) -> Mean {
+    fn foreseen(&self) -> MeanWithBar {
         let factor = if self.scheme == SchemeKind::Baoab { 0.25 * self.dt * self.dt } else { 0.0 };
-        Mean { value: factor * self.curvature.value, bar: factor * self.curvature.bar }
+        MeanWithBar { value: factor * self.curvature.value, bar: factor * self.curvature.bar }
     }
 
     /// Difference of measured and theoretical cooling in standard errors; `None` with LAN17's scheme.
@@ -67,22 +67,22 @@ impl Fluid {
     }
 
     /// Error of the energy relative to the limit of short steps, including the half-width of the limit.
-    fn error(&self, limit: Mean) -> Mean {
-        Mean { value: self.potential.value - limit.value, bar: self.potential.bar.hypot(limit.bar) }
+    fn error(&self, limit: MeanWithBar) -> MeanWithBar {
+        MeanWithBar { value: self.potential.value - limit.value, bar: self.potential.bar.hypot(limit.bar) }
     }
 }
 
 /// Measures every step.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let cases: Vec<(SchemeKind, f64)> =
         STEPS.iter().flat_map(|&dt| SCHEMES.map(|scheme| (scheme, dt))).collect();
-    let meter = Meter::new(cases.len() as f64, lab.progress);
+    let meter = ProgressMeter::new(cases.len() as f64, lab.progress);
     let fluids = meter.each(&cases, |&(scheme, dt)| fluid(scheme, dt))?;
     let limit = limit(&fluids);
     let orders = SCHEMES.map(|scheme| order(&fluids, scheme, limit));
-    let cell = |Mean { value, bar }: Mean| Cell::with_error(value, Some(bar), 4);
-    Ok(Made::of([
-        Rows::of(&fluids)
+    let cell = |MeanWithBar { value, bar }: MeanWithBar| TableCell::with_error(value, Some(bar), 4);
+    Ok(FinishedItem::of([
+        FrameBuilder::of(&fluids)
             .text("scheme", |it| it.scheme.word())
             .number("dt", 4, |it| it.dt)
             .mean("energy", 4, |it| it.potential)
@@ -97,17 +97,17 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .number("⟨∇²U⟩/2", 1, |it| it.curvature.value)
             .number("ms a unit of time", 1, |it| 1e3 * it.cost)
             .frame("accuracy", "Energy of the pairs a particle, pressure and temperatures"),
-        Rows::of(fluids.iter().filter(|it| it.is_whole))
+        FrameBuilder::of(fluids.iter().filter(|it| it.is_whole))
             .text("scheme", |it| it.scheme.word())
             .number("dt", 4, |it| it.dt)
             .number("wall time of a unit of time (s)", 4, |it| it.cost)
             .cell("error of the energy", |it| cell(it.error(limit)))
             .cell("temperature", |it| cell(it.temperature))
             .cell("at the end of the step", |it| cell(it.at_end))
-            .cell("by theory", |it| cell(Mean { value: 1.0 - it.foreseen().value, ..it.foreseen() }))
+            .cell("by theory", |it| cell(MeanWithBar { value: 1.0 - it.foreseen().value, ..it.foreseen() }))
             .cell("⟨F²⟩/⟨∇²U⟩", |it| cell(it.configurational))
             .frame("errors", "Error of the energy, and temperatures, of runs that lost no particle"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .mean("energy at short steps", 4, |()| limit)
             .mean("order of stochastic", 1, |()| orders[0])
             .mean("order of BAOAB", 1, |()| orders[1])
@@ -117,38 +117,41 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// Energy at dt = 0, from a linear fit in dt² to the energies of BAOAB.
-fn limit(fluids: &[Fluid]) -> Mean {
+fn limit(fluids: &[FluidAtStep]) -> MeanWithBar {
     let of = fluids.iter().filter(|fluid| fluid.scheme == SchemeKind::Baoab && fluid.is_whole);
-    let points: Vec<(f64, Mean)> = of.map(|fluid| (fluid.dt.powi(2), fluid.potential)).collect();
+    let points: Vec<(f64, MeanWithBar)> = of.map(|fluid| (fluid.dt.powi(2), fluid.potential)).collect();
     line(&points)[0]
 }
 
 /// Order of a scheme's error in the step. `None` if fewer than three errors exceed their half-widths, or if the order is known too poorly.
-fn order(fluids: &[Fluid], scheme: SchemeKind, limit: Mean) -> Option<Mean> {
+fn order(fluids: &[FluidAtStep], scheme: SchemeKind, limit: MeanWithBar) -> Option<MeanWithBar> {
     let of = fluids.iter().filter(|it| it.scheme == scheme && it.is_whole);
     let seen = of.map(|it| (it.dt, it.error(limit))).filter(|(_, error)| error.value.abs() > error.bar);
-    let logarithm = |Mean { value, bar }: Mean| Mean { value: value.abs().ln(), bar: bar / value.abs() };
-    let points: Vec<(f64, Mean)> = seen.map(|(dt, error)| (dt.ln(), logarithm(error))).collect();
+    let logarithm = |MeanWithBar { value, bar }: MeanWithBar| MeanWithBar {
+        value: value.abs().ln(),
+        bar: bar / value.abs(),
+    };
+    let points: Vec<(f64, MeanWithBar)> = seen.map(|(dt, error)| (dt.ln(), logarithm(error))).collect();
     let [_, slope] = (points.len() >= LEAST).then(|| line(&points))?;
     (slope.bar < ORDER_WITHIN).then_some(slope)
 }
 
 /// Intercept and slope of the weighted least-squares line through at least two points with half-widths.
-fn line(points: &[(f64, Mean)]) -> [Mean; 2] {
+fn line(points: &[(f64, MeanWithBar)]) -> [MeanWithBar; 2] {
     let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for &(x, Mean { value: y, bar }) in points {
+    for &(x, MeanWithBar { value: y, bar }) in points {
         let weight = bar.powi(-2);
         (w, wx, wy, wxx, wxy) =
             (w + weight, wx + weight * x, wy + weight * y, wxx + weight * x * x, wxy + weight * x * y);
     }
     let determinant = w * wxx - wx * wx;
-    let height = Mean { value: (wxx * wy - wx * wxy) / determinant, bar: (wxx / determinant).sqrt() };
-    [height, Mean { value: (w * wxy - wx * wy) / determinant, bar: (w / determinant).sqrt() }]
+    let height = MeanWithBar { value: (wxx * wy - wx * wxy) / determinant, bar: (wxx / determinant).sqrt() };
+    [height, MeanWithBar { value: (w * wxy - wx * wy) / determinant, bar: (w / determinant).sqrt() }]
 }
 
-fn fluid(scheme: SchemeKind, dt: f64) -> Result<Fluid, StudyError> {
+fn fluid(scheme: SchemeKind, dt: f64) -> Result<FluidAtStep, StudyError> {
     let overrides = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, dt);
-    let mut running = Running::begin("langevin-dense", &overrides)?;
+    let mut running = RunningScene::begin("langevin-dense", &overrides)?;
     let count = running.simulation.particles().len() as f64;
     // The initial mesh melts within some units of time.
     let mut done = running.steps((50.0 / dt) as u64);
@@ -173,9 +176,9 @@ fn fluid(scheme: SchemeKind, dt: f64) -> Result<Fluid, StudyError> {
         parts.iter_mut().zip(means).for_each(|(parts, mean)| parts.push(mean));
     }
     let [potential, pressure, temperature, at_end, cooling, configurational, curvature] =
-        parts.map(|parts| Mean::of_course(&parts));
+        parts.map(|parts| MeanWithBar::of_course(&parts));
     let is_whole = done.is_ok();
-    Ok(Fluid {
+    Ok(FluidAtStep {
         scheme,
         dt,
         potential,
@@ -230,9 +233,9 @@ mod tests {
 
     /// Fluids with BAOAB whose energies have the error `factor` dt² and the half-width `bar`. Their velocities at the end of the step are
     /// colder than in theory by `off`.
-    fn fluids(factor: f64, bar: f64, off: f64) -> Vec<Fluid> {
-        let mean = |value: f64| Mean { value, bar };
-        let fluid = |dt: f64| Fluid {
+    fn fluids(factor: f64, bar: f64, off: f64) -> Vec<FluidAtStep> {
+        let mean = |value: f64| MeanWithBar { value, bar };
+        let fluid = |dt: f64| FluidAtStep {
             scheme: SchemeKind::Baoab,
             dt,
             potential: mean(-1.0 + factor * dt * dt),
@@ -251,7 +254,7 @@ mod tests {
     #[test]
     fn order_within_the_noise_is_none() {
         let known = fluids(100.0, 1e-5, 0.0);
-        let Mean { value, bar } = order(&known, SchemeKind::Baoab, limit(&known)).unwrap();
+        let MeanWithBar { value, bar } = order(&known, SchemeKind::Baoab, limit(&known)).unwrap();
         assert!((value - 2.0).abs() < 0.05 && bar < 0.05, "{value} {bar}");
         let lost = fluids(1.0, 1e-3, 0.0);
         assert!(order(&lost, SchemeKind::Baoab, limit(&lost)).is_none());
@@ -266,7 +269,7 @@ mod tests {
     /// Intercept and slope of an exact line, and the error bars for two points with equal error bars.
     #[test]
     fn lines_go_through_their_points() {
-        let at = |x: f64, bar: f64| (x, Mean { value: 3.0 - 2.0 * x, bar });
+        let at = |x: f64, bar: f64| (x, MeanWithBar { value: 3.0 - 2.0 * x, bar });
         let [height, slope] = line(&[at(0.0, 0.1), at(1.0, 0.1), at(4.0, 0.3)]);
         assert!((height.value - 3.0).abs() < 1e-12 && (slope.value + 2.0).abs() < 1e-12);
         let [height, slope] = line(&[at(0.0, 0.1), at(1.0, 0.1)]);

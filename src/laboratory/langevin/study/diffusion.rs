@@ -1,11 +1,11 @@
 //! Mean square displacement and velocities of particles in a heat bath, compared with exact results.
 
 use super::PARTS;
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::Running;
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::Mean;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::RunningScene;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::MeanWithBar;
 use crate::study::StudyError;
 use std::f64::consts::PI;
 use stripmine_physics::method::langevin::keys::INTEGRATOR;
@@ -33,7 +33,7 @@ fn exact(time: f64) -> f64 {
 }
 
 /// Time series of one system.
-struct Followed {
+struct SystemSeries {
     particles: u64,
     side: f64,
     has_pairs: bool,
@@ -46,7 +46,7 @@ struct Followed {
     temperature: f64,
 }
 
-impl Followed {
+impl SystemSeries {
     fn name(&self) -> String {
         let pairs = if self.has_pairs { "" } else { ", no pairs" };
         format!("N = {}, L = {}{pairs}", self.particles, self.side)
@@ -77,25 +77,25 @@ impl Followed {
         (self.particles as f64).sqrt().recip()
     }
 
-    fn variance(&self) -> Cell {
-        Cell::with_error(self.temperature, Some(WIDTH * self.standard_error() * self.temperature), 4)
+    fn variance(&self) -> TableCell {
+        TableCell::with_error(self.temperature, Some(WIDTH * self.standard_error() * self.temperature), 4)
     }
 }
 
 /// Temperature of free particles over that of the bath, with a scheme and a step in units of m/γ.
-struct Heated {
+struct HeatingPoint {
     scheme: SchemeKind,
     dt: f64,
-    temperature: Mean,
+    temperature: MeanWithBar,
     maxwell: f64,
 }
 
 /// Simulates every system.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
         schemes.into_iter().flat_map(|scheme| STEPS.map(|dt| (scheme, dt))).collect();
-    let meter = Meter::new((SYSTEMS.len() + 1 + cases.len()) as f64, lab.progress);
+    let meter = ProgressMeter::new((SYSTEMS.len() + 1 + cases.len()) as f64, lab.progress);
     let mut systems = meter.each_from_last(&SYSTEMS, |&(particles, side)| followed(particles, side, true))?;
     systems.push(followed(SYSTEMS[0].0, SYSTEMS[0].1, false)?);
     meter.add(1.0);
@@ -105,8 +105,8 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let heating = heated.iter().filter(|it| it.scheme != SchemeKind::AsPrinted);
     let heating = heating.map(|it| ((it.temperature.value - 1.0) / it.temperature.bar).abs());
     let samples = systems.iter().flat_map(|it| (0..it.times.len()).map(move |at| (it, at)));
-    Ok(Made::of([
-        Rows::of(&systems)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(&systems)
             .text("system", |it| it.name())
             .number("over exact at 0.1", 3, |it| it.over_exact(0.1))
             .number("at 1", 3, |it| it.over_exact(1.0))
@@ -119,7 +119,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .number("temperature", 4, |it| it.temperature)
             .number("p of Maxwell", 3, |it| it.maxwell)
             .frame("displacements", "Displacements over those without pairs, and velocities at the end"),
-        Rows::of(samples)
+        FrameBuilder::of(samples)
             .text("system", |(it, _)| it.name())
             .number("time", 3, |(it, at)| it.times[*at])
             .number("mean square displacement", 4, |(it, at)| it.square[*at][0])
@@ -127,23 +127,23 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .number("without pairs, exact", 4, |(it, at)| exact(it.times[*at]))
             .cell("over the exact one", |(it, at)| {
                 let ratio = it.square[*at][0] / exact(it.times[*at]);
-                Cell::with_error(ratio, Some(WIDTH * it.standard_error() * ratio), 3)
+                TableCell::with_error(ratio, Some(WIDTH * it.standard_error() * ratio), 3)
             })
             .number("by Enskog", 3, |(it, at)| it.has_pairs.then(|| it.by_enskog(it.times[*at])))
             .frame("over-time", "Mean square displacement over the time"),
-        Rows::of(&heated)
+        FrameBuilder::of(&heated)
             .text("scheme", |it| it.scheme.word())
             .number("step over m/γ", 2, |it| it.dt)
             .cell("temperature over that of the bath", |it| {
-                Cell::with_error(it.temperature.value, Some(it.temperature.bar), 4)
+                TableCell::with_error(it.temperature.value, Some(it.temperature.bar), 4)
             })
             .number("p of Maxwell", 3, |it| it.maxwell)
             .frame("heating", "Temperature of free particles"),
-        Rows::of((0..=60).map(|at| 10f64.powf(-2.0 + f64::from(at) / 30.0)))
+        FrameBuilder::of((0..=60).map(|at| 10f64.powf(-2.0 + f64::from(at) / 30.0)))
             .number("step over m/γ", 3, |dt| *dt)
             .number("temperature over that of the bath", 4, |dt| 1.0 / (1.0 - 0.5 * dt))
             .frame("theory", "Temperature by 1/(1 − γ dt/2m)"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .cell("velocity variance with pairs", |()| dense.variance())
             .cell("velocity variance without pairs", |()| free.variance())
             .number("p of Maxwell with pairs", 3, |()| dense.maxwell)
@@ -155,11 +155,11 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<Followed, StudyError> {
+fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<SystemSeries, StudyError> {
     let law = if has_pairs { PairLaw::Wca } else { PairLaw::None };
     let overrides =
         Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&LAW, law).set(&DT, STEP);
-    let mut running = Running::begin("langevin-report", &overrides)?;
+    let mut running = RunningScene::begin("langevin-report", &overrides)?;
     let start = running.simulation.particles();
     let (mut times, mut square) = (vec![], vec![]);
     for sample in 0.. {
@@ -179,12 +179,12 @@ fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<Followed, Stud
         square.push([running.observed(["msd"])?[0], inside]);
     }
     let [temperature] = running.observed(["temperature"])?;
-    Ok(Followed { particles, side, has_pairs, times, square, maxwell: running.maxwell(1.0), temperature })
+    Ok(SystemSeries { particles, side, has_pairs, times, square, maxwell: running.maxwell(1.0), temperature })
 }
 
-fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
+fn heated(scheme: SchemeKind, dt: f64) -> Result<HeatingPoint, StudyError> {
     let overrides = Overrides::new().set(&COUNT, 4000_u64).set(&INTEGRATOR, scheme).set(&DT, dt);
-    let mut running = Running::begin("langevin-free", &overrides)?;
+    let mut running = RunningScene::begin("langevin-free", &overrides)?;
     // Samples are 5 m/γ apart.
     let between = (5.0 / dt).ceil() as u64;
     let mut temperatures = vec![];
@@ -193,7 +193,12 @@ fn heated(scheme: SchemeKind, dt: f64) -> Result<Heated, StudyError> {
         running.steps(between)?;
         temperatures.push(running.observed(["temperature"])?[0]);
     }
-    Ok(Heated { scheme, dt, temperature: Mean::of_course(&temperatures), maxwell: running.maxwell(1.0) })
+    Ok(HeatingPoint {
+        scheme,
+        dt,
+        temperature: MeanWithBar::of_course(&temperatures),
+        maxwell: running.maxwell(1.0),
+    })
 }
 
 #[cfg(test)]
@@ -205,8 +210,15 @@ mod tests {
     fn enskog_friction_slows_dense_systems_only() {
         let [dense, thin] = [(40_000, 100.0), (1000, 1000.0)].map(|(particles, side)| {
             let (times, square) = (vec![20.0], vec![[1.0; 2]]);
-            let system =
-                Followed { particles, side, has_pairs: true, times, square, maxwell: 0.5, temperature: 1.0 };
+            let system = SystemSeries {
+                particles,
+                side,
+                has_pairs: true,
+                times,
+                square,
+                maxwell: 0.5,
+                temperature: 1.0,
+            };
             system.by_enskog(20.0)
         });
         assert!((dense - 0.411).abs() < 0.005 && thin > 0.999, "{dense}, {thin}");

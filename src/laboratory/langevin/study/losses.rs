@@ -1,16 +1,16 @@
 //! Particles lost from the box at long steps: number lost against the step, and the longest step without a loss.
 
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::laboratory::running::{Running, bisected, prepared};
-use crate::results::{Lab, Made, Meter, Size};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::laboratory::running::{RunningScene, bisected, prepared};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use std::f64::consts::PI;
 use stripmine_physics::method::langevin::keys::{BATH_TEMPERATURE, INTEGRATOR, MOST_LOST};
 use stripmine_physics::method::langevin::laws::STRENGTH;
 use stripmine_physics::method::langevin::options::SchemeKind;
 use stripmine_physics::method::observed::UnknownName;
-use stripmine_physics::near::Near;
+use stripmine_physics::near::NeighbourSearch;
 use stripmine_physics::particles::Particle;
 use stripmine_physics::scene::{COUNT, DT, Overrides, SIDES, TEMPERATURE};
 
@@ -33,12 +33,12 @@ const PART: u64 = 8;
 const TOLERANCE: f64 = 0.05;
 
 /// Counts losses and interactions, and searches for the longest steps without a loss.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let mut steps: Vec<f64> = SOURCE.iter().map(|(dt, ..)| *dt).chain(FINER).collect();
     steps.sort_by(|a, b| b.total_cmp(a));
     let choices: Vec<[f64; 2]> =
         STRENGTHS.iter().flat_map(|&strength| TEMPERATURES.map(|kt| [strength, kt])).collect();
-    let meter = Meter::new((steps.len() + SOURCE.len() + 2 * choices.len()) as f64, lab.progress);
+    let meter = ProgressMeter::new((steps.len() + SOURCE.len() + 2 * choices.len()) as f64, lab.progress);
     let of_step = |dt: f64| overrides(PARTICLES, dt).set(&MOST_LOST, PARTICLES);
     let lost_by = |dt: f64, scheme: SchemeKind| lost(PARTICLES, &of_step(dt).set(&INTEGRATOR, scheme));
     let losses = meter.each(&steps, |&dt| {
@@ -47,14 +47,14 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let met = meter.each(&SOURCE, |&(dt, ..)| interactions(&of_step(dt)))?;
     let boundaries = meter.each(&choices, |&choice| boundary(choice))?;
     let chosen = meter.each(&choices, |&choice| lost_by_choice(choice))?;
-    Ok(Made::of([
-        Rows::of(losses)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(losses)
             .number("dt", 3, |(dt, ..)| *dt)
             .count("stochastic", |(_, stochastic, _)| *stochastic)
             .count("baoab", |(.., baoab)| *baoab)
             .cell("source", |(dt, ..)| SOURCE.iter().find(|it| it.0 == *dt).map(|(_, lost, _)| *lost))
             .frame("losses", format!("Particles lost in {STEPS} steps, of {PARTICLES}")),
-        Rows::of(SOURCE.iter().zip(met))
+        FrameBuilder::of(SOURCE.iter().zip(met))
             .number("dt", 3, |((dt, ..), _)| *dt)
             .count("interactions", |(_, met)| *met)
             .count("source", |((.., source), _)| *source)
@@ -65,7 +65,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
                 "interactions",
                 format!("Pairs nearer than σ, counted from each of the two, over {STEPS} steps"),
             ),
-        Rows::of(choices.iter().zip(&boundaries))
+        FrameBuilder::of(choices.iter().zip(&boundaries))
             .number("ε", 1, |(choice, _)| choice[0])
             .number("kT", 1, |(choice, _)| choice[1])
             .number("longest step", 5, |(_, [longest, ..])| *longest)
@@ -74,7 +74,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .number("by hardest collisions", 5, |(_, [.., hardest])| *hardest)
             .number("of it", 3, |(_, [longest, _, hardest])| longest / hardest)
             .frame("boundaries", format!("Longest step without a loss in {STEPS} steps, BAOAB, to 5 %")),
-        Rows::of(choices.iter().zip(&chosen))
+        FrameBuilder::of(choices.iter().zip(&chosen))
             .number("ε", 1, |(choice, _)| choice[0])
             .number("kT", 1, |(choice, _)| choice[1])
             .cells(SOURCE.map(|(dt, ..)| format!("lost, dt = {dt}")), |(_, lost)| **lost)
@@ -97,7 +97,7 @@ fn chosen(particles: u64, dt: f64, [strength, temperature]: [f64; 2]) -> Overrid
 
 /// Particles lost in LAN17's number of steps; all of them if the run fails.
 fn lost(particles: u64, overrides: &Overrides) -> Result<u64, StudyError> {
-    let mut running = Running::timed("langevin-report", overrides)?;
+    let mut running = RunningScene::timed("langevin-report", overrides)?;
     Ok(match running.steps(STEPS) {
         Ok(()) => running.observed(["lost"])?[0] as u64,
         Err(_) => particles,
@@ -126,13 +126,13 @@ fn times_off(lost: [u64; 4]) -> f64 {
 /// Pairs nearer than σ, counted from both particles and summed over the steps of a run with LAN17's scheme.
 fn interactions(overrides: &Overrides) -> Result<u64, StudyError> {
     let mut running =
-        Running::timed("langevin-report", &overrides.clone().set(&INTEGRATOR, SchemeKind::Stochastic))?;
+        RunningScene::timed("langevin-report", &overrides.clone().set(&INTEGRATOR, SchemeKind::Stochastic))?;
     let (domain, mut met) = (running.domain, 0);
     for _ in 0..STEPS {
         running.steps(1)?;
         let particles = running.simulation.particles();
         let places = particles.all().iter().map(Particle::place);
-        let near = Near::among(domain, places.clone(), DIAMETER);
+        let near = NeighbourSearch::among(domain, places.clone(), DIAMETER);
         let others = places.flat_map(|place| near.of(place).map(move |(_, other)| (place, other)));
         // Each position also finds itself.
         met += others.filter(|(place, other)| domain.distance(*place, *other) < DIAMETER).count();

@@ -1,17 +1,17 @@
 //! Wall time against the number of sectors along a side, on one thread and on two; comparison of searches; time of the phases.
 
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::rates::{Case, Measured, Own, Reading, rates};
-use crate::laboratory::running::{Running, prepared};
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::rates::{CaseReading, MeasuredCase, RateCase, StudyWork, rates};
+use crate::laboratory::running::{RunningScene, prepared};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use std::collections::BTreeMap;
 use std::time::Instant;
-use stripmine_physics::io::extxyz::{self, Frame};
+use stripmine_physics::io::extxyz::{self, ParticleFrame};
 use stripmine_physics::method::langevin::keys::{PER_SIDE, SEARCH, SORT};
 use stripmine_physics::method::langevin::laws::{LAW, PairLaw};
-use stripmine_physics::method::langevin::options::{By, SortKind};
+use stripmine_physics::method::langevin::options::{PairSearchKind, SortKind};
 use stripmine_physics::scene::{COUNT, Overrides, SIDES, SPACING};
 use stripmine_physics::words::Words;
 
@@ -31,27 +31,29 @@ const PARTICLES: f64 = 40_000.0;
 const STEPS: f64 = 100.0;
 
 /// Name of a search, and its overrides.
-type Search = (&'static str, fn(Overrides) -> Overrides);
+type NamedSearch = (&'static str, fn(Overrides) -> Overrides);
 
 /// Searches that are compared.
-const SEARCHES: [Search; 4] = [
-    ("lattice", |scene| scene.set(&SEARCH, By::Lattice)),
-    ("sectors, sorted when needed", |scene| scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::WhenNeeded)),
-    ("sectors, sorted at every step", |scene| {
-        scene.set(&SEARCH, By::Sectors).set(&SORT, SortKind::EveryStep)
+const SEARCHES: [NamedSearch; 4] = [
+    ("lattice", |scene| scene.set(&SEARCH, PairSearchKind::Lattice)),
+    ("sectors, sorted when needed", |scene| {
+        scene.set(&SEARCH, PairSearchKind::Sectors).set(&SORT, SortKind::WhenNeeded)
     }),
-    ("lists", |scene| scene.set(&SEARCH, By::NeighborList)),
+    ("sectors, sorted at every step", |scene| {
+        scene.set(&SEARCH, PairSearchKind::Sectors).set(&SORT, SortKind::EveryStep)
+    }),
+    ("lists", |scene| scene.set(&SEARCH, PairSearchKind::NeighborList)),
 ];
 /// Particles of the scenes that compare searches, and their densities N σ²/A.
 const COMPARED: f64 = 4000.0;
 const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
 
 /// Measured work other than runs of scenes.
-pub(in crate::laboratory::langevin) static WORKS: [Own; 1] =
-    [Own { name: "langevin-frames", measure: |_| frames() }];
+pub(in crate::laboratory::langevin) static WORKS: [StudyWork; 1] =
+    [StudyWork { name: "langevin-frames", measure: |_| frames() }];
 
 /// Fluid with its pair law, density N σ²/A, the search chosen by `auto`, and the index of the case of each search that supports it.
-struct Fluid {
+struct SearchedFluid {
     law: PairLaw,
     density: f64,
     auto: String,
@@ -59,8 +61,8 @@ struct Fluid {
 }
 
 /// Measures every number of sectors, neighbour lists, and fluids with every search.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
-    let (fewest, seconds) = if size == Size::Quick { (100, 0.05) } else { (3, 0.06) };
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let (fewest, seconds) = if size == StudySize::Quick { (100, 0.05) } else { (3, 0.06) };
     let counts = SOURCE.iter().filter(|(count, _)| *count >= fewest);
     let sides: Vec<Option<(u64, [f64; 2])>> = counts.copied().map(Some).chain([None]).collect();
     let name =
@@ -68,33 +70,35 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let mut cases = vec![];
     for side in &sides {
         let scene = match side {
-            Some((count, _)) => Overrides::new().set(&SEARCH, By::Sectors).set(&PER_SIDE, *count),
-            None => Overrides::new().set(&SEARCH, By::NeighborList),
+            Some((count, _)) => Overrides::new().set(&SEARCH, PairSearchKind::Sectors).set(&PER_SIDE, *count),
+            None => Overrides::new().set(&SEARCH, PairSearchKind::NeighborList),
         };
         cases.extend([1, 2].map(|threads| {
-            let case = Case::steps("langevin-report", &scene, 1, 1).label("sectors", name(side));
+            let case = RateCase::steps("langevin-report", &scene, 1, 1).label("sectors", name(side));
             case.for_seconds(seconds).on_threads(threads)
         }));
     }
     let laws = [PairLaw::Wca, PairLaw::LennardJones];
     let fluids = laws.into_iter().flat_map(|law| DENSITIES.map(|density| (law, density)));
-    let fluids: Vec<Fluid> = fluids
+    let fluids: Vec<SearchedFluid> = fluids
         .map(|(law, density)| fluid(law, density, 0.25 * seconds, &mut cases))
         .collect::<Result<_, _>>()?;
     cases.push(
-        Case::steps("langevin-report", &Overrides::new(), 50, 500).label("phases of", "lists").on_threads(1),
+        RateCase::steps("langevin-report", &Overrides::new(), 50, 500)
+            .label("phases of", "lists")
+            .on_threads(1),
     );
-    cases.push(Case::own(&WORKS[0], serde_json::Value::Null).label("writing", "frames"));
+    cases.push(RateCase::own(&WORKS[0], serde_json::Value::Null).label("writing", "frames"));
     let all = rates(lab, &cases)?;
-    let [.., phases, written] = all.as_slice() else { return Ok(Made::default()) };
+    let [.., phases, written] = all.as_slice() else { return Ok(FinishedItem::default()) };
     let part =
         |(name, _): (&String, &f64)| (name.clone(), phases.part(name).cell(1e3 * STEPS * PARTICLES, 2));
-    let mut parts: BTreeMap<String, Cell> = phases.readings[0].parts.iter().map(part).collect();
+    let mut parts: BTreeMap<String, TableCell> = phases.readings[0].parts.iter().map(part).collect();
     parts.insert("ten frames as text".to_owned(), written.cost().cell(1e3, 2));
-    let seconds = |case: &Measured| case.cost().cell(STEPS * PARTICLES, 4);
+    let seconds = |case: &MeasuredCase| case.cost().cell(STEPS * PARTICLES, 4);
     let of_search = |case: usize| all[case].cost().cell(1e6 * COMPARED, 1);
-    Ok(Made::of([
-        Rows::of(sides.iter().zip(all.chunks(2)))
+    Ok(FinishedItem::of([
+        FrameBuilder::of(sides.iter().zip(all.chunks(2)))
             .text("sectors", |(side, _)| name(side))
             .cell("1 thread (s)", |(_, threads)| seconds(&threads[0]))
             .cell("2 threads (s)", |(_, threads)| seconds(&threads[1]))
@@ -103,7 +107,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
             .number("source, 1 (s)", 1, |(side, _)| side.map(|(_, source)| source[0]))
             .number("source, 2 (s)", 1, |(side, _)| side.map(|(_, source)| source[1]))
             .frame("wall-time", "Wall time of 100 steps: median and range of three processes"),
-        Rows::of(&fluids)
+        FrameBuilder::of(&fluids)
             .text("pairs", |fluid| fluid.law.word())
             .number("density N σ²/A", 2, |fluid| fluid.density)
             .cells(SEARCHES.map(|(name, _)| format!("{name} (µs)")), |fluid| {
@@ -112,7 +116,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
             .text("auto takes", |fluid| &fluid.auto)
             .number("slower than the best (%)", 0, |fluid| fluid.loss(&all).map(|it| 100.0 * it))
             .frame("searches", "A step of 4000 particles by every search, on one thread"),
-        Rows::of(parts)
+        FrameBuilder::of(parts)
             .text("part", |(name, _)| name.clone())
             .cell("time (ms)", |(_, time)| time.clone())
             .frame("phases", "Where the time goes: 100 steps by lists on one thread"),
@@ -120,9 +124,9 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     .with_seeds([1]))
 }
 
-impl Fluid {
+impl SearchedFluid {
     /// Relative time by which `auto` is slower than the fastest search.
-    fn loss(&self, all: &[Measured]) -> Option<f64> {
+    fn loss(&self, all: &[MeasuredCase]) -> Option<f64> {
         let cost = |case: &Option<usize>| case.map(|case| all[case].cost().median);
         let best = self.searches.iter().filter_map(cost).fold(f64::INFINITY, f64::min);
         // With sectors, `auto` sorts when needed.
@@ -137,28 +141,33 @@ impl Fluid {
 }
 
 /// Makes a fluid and adds the searches that support it to the cases.
-fn fluid(law: PairLaw, density: f64, seconds: f64, cases: &mut Vec<Case>) -> Result<Fluid, StudyError> {
+fn fluid(
+    law: PairLaw,
+    density: f64,
+    seconds: f64,
+    cases: &mut Vec<RateCase>,
+) -> Result<SearchedFluid, StudyError> {
     let side = (COMPARED / density).sqrt();
     let scene = Overrides::new().set(&LAW, law).set(&COUNT, COMPARED as u64);
     let scene = scene.set(&SIDES, [side; 2]).set(&SPACING, 1.13);
     let searches = SEARCHES.map(|(name, searched)| {
         let overrides = searched(scene.clone());
         prepared("langevin-dense", &overrides).is_ok().then(|| {
-            let case = Case::steps("langevin-dense", &overrides, 1, 1).for_seconds(seconds).on_threads(1);
-            cases.push(case.label("density", Cell::Number(density, 2)).label("search", name));
+            let case = RateCase::steps("langevin-dense", &overrides, 1, 1).for_seconds(seconds).on_threads(1);
+            cases.push(case.label("density", TableCell::Number(density, 2)).label("search", name));
             cases.len() - 1
         })
     });
     let auto = prepared("langevin-dense", &scene)?.settings["search"].as_str().unwrap_or("").to_owned();
-    Ok(Fluid { law, density, auto, searches })
+    Ok(SearchedFluid { law, density, auto, searches })
 }
 
 /// Writes the ten frames of LAN17's run as text.
-fn frames() -> Result<Reading, StudyError> {
-    let running = Running::timed("langevin-report", &Overrides::new())?;
+fn frames() -> Result<CaseReading, StudyError> {
+    let running = RunningScene::timed("langevin-report", &Overrides::new())?;
     let begun = Instant::now();
     for step in 0..10 {
-        let frame = Frame {
+        let frame = ParticleFrame {
             particles: running.simulation.particles(),
             cell: running.domain.lengths(),
             origin: running.domain.corner(),
@@ -171,7 +180,7 @@ fn frames() -> Result<Reading, StudyError> {
         // Writing to a sink cannot fail.
         drop(extxyz::write(&frame, &mut std::io::sink()));
     }
-    Ok(Reading { work: 1.0, seconds: begun.elapsed().as_secs_f64(), ..Reading::default() })
+    Ok(CaseReading { work: 1.0, seconds: begun.elapsed().as_secs_f64(), ..CaseReading::default() })
 }
 
 #[cfg(test)]
@@ -186,11 +195,11 @@ mod tests {
         let side = (count as f64 / 0.7).sqrt();
         let scene = Overrides::new().set(&COUNT, count).set(&SIDES, [side; 2]);
         let scene = match per_side {
-            Some(per_side) => scene.set(&SEARCH, By::Sectors).set(&PER_SIDE, per_side),
-            None => scene.set(&SEARCH, By::NeighborList),
+            Some(per_side) => scene.set(&SEARCH, PairSearchKind::Sectors).set(&PER_SIDE, per_side),
+            None => scene.set(&SEARCH, PairSearchKind::NeighborList),
         };
         let particles = on_threads(threads, || {
-            let mut running = Running::timed("langevin-dense", &scene)?;
+            let mut running = RunningScene::timed("langevin-dense", &scene)?;
             running.steps(6)?;
             Ok(running.simulation.particles())
         });

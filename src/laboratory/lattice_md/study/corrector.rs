@@ -1,8 +1,8 @@
 //! Gear's corrector as printed in BP93, appendix A, and as corrected: an undamped oscillation over ten periods.
 
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use std::f64::consts::TAU;
 use stripmine_kernels::integrator::gear::{Acceleration, coefficients};
 
@@ -14,7 +14,7 @@ const PERIODS: u32 = 10;
 const LOST: f64 = 0.5;
 
 /// Integrates the oscillation with both correctors.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let runs = ["printed", "difference"].into_iter().flat_map(|corrector| {
         let of =
             move |values| STEPS.map(|steps| (corrector, values, steps, followed(corrector, values, steps)));
@@ -24,15 +24,15 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         let error = |steps| followed("difference", values, steps).unwrap_or(f64::NAN);
         libm::log2(error(512) / error(1024))
     };
-    Ok(Made::of([
-        Rows::of(runs)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(runs)
             .text("corrector", |(corrector, ..)| *corrector)
             .count("values", |(_, values, ..)| *values)
             .count("steps of a period", |(.., steps, _)| *steps)
             .short("largest |ΔE/E|", |(.., run)| run.ok())
             .cell("lost after steps", |(.., run)| run.err())
             .frame("runs", "Energy along ten periods of an undamped oscillation"),
-        Rows::of(4..=6_usize)
+        FrameBuilder::of(4..=6_usize)
             .count("values", |values| *values)
             .number("order", 2, |values| order(*values))
             .frame("orders", "Power of the step in the energy error, from 512 to 1024 steps of a period"),

@@ -1,10 +1,10 @@
 //! Density waves against dissipation: the pipe at several γ_N, and a control that must stay homogeneous.
 
 use super::pipe_flow::{Flow, elastic, flow, late};
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::Spread;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::RunSpread;
 use stripmine_physics::method::lattice_md::keys::NORMAL_DAMPING;
 use stripmine_physics::scene::Overrides;
 
@@ -14,7 +14,7 @@ const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
 const SEEDS: [u64; 6] = [1, 2, 3, 4, 5, 6];
 
 /// Runs every case with every seed.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let scan = SCAN.map(|damping| {
         let name = format!("γ_N = {damping:.0} 1/s");
         (name, Some(damping), Overrides::new().set(&NORMAL_DAMPING, damping))
@@ -23,11 +23,11 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     let cases: Vec<_> = scan.into_iter().chain([control]).collect();
     let runs: Vec<(&Overrides, u64)> =
         cases.iter().flat_map(|(.., overrides)| SEEDS.map(|seed| (overrides, seed))).collect();
-    let flows = Meter::new(runs.len() as f64, lab.progress)
+    let flows = ProgressMeter::new(runs.len() as f64, lab.progress)
         .each(&runs, |&(overrides, seed)| flow("pipe-small", overrides, seed, false, |_| {}))?;
     // Fano factor at the start and late, strongest mode at the start and late, late mean velocity (m/s).
     let spreads = |flows: &[Flow]| {
-        let over = |of: fn(&Flow) -> f64| Spread::of(&flows.iter().map(of).collect::<Vec<_>>());
+        let over = |of: fn(&Flow) -> f64| RunSpread::of(&flows.iter().map(of).collect::<Vec<_>>());
         [
             over(|flow| flow.fano[0]),
             over(|flow| late(&flow.fano).value),
@@ -37,24 +37,24 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         ]
     };
     let cases: Vec<_> = cases.iter().zip(flows.chunks(SEEDS.len()).map(spreads)).collect();
-    let with_error = |it: Spread, decimals: usize| Cell::with_error(it.mean, it.error, decimals);
-    let drawn = |it: Spread| {
+    let with_error = |it: RunSpread, decimals: usize| TableCell::with_error(it.mean, it.error, decimals);
+    let drawn = |it: RunSpread| {
         let error = it.error.unwrap_or(0.0);
-        [it.mean, it.mean - error, it.mean + error].map(|value| Cell::Number(value, 3))
+        [it.mean, it.mean - error, it.mean + error].map(|value| TableCell::Number(value, 3))
     };
     let [late, start] =
         ["late", "start"].map(|name| [name.into(), format!("{name} low"), format!("{name} high")]);
-    Ok(Made::of([
-        Rows::of(&cases)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(&cases)
             .text("case", |((name, ..), _)| name)
             .cell("Fano at the start", |(_, spreads)| with_error(spreads[0], 2))
             .cell("Fano late", |(_, spreads)| with_error(spreads[1], 2))
-            .cell("single seeds", |(_, spreads)| Cell::Range([spreads[1].lowest, spreads[1].highest], 2))
+            .cell("single seeds", |(_, spreads)| TableCell::Range([spreads[1].lowest, spreads[1].highest], 2))
             .cell("strongest mode at the start", |(_, spreads)| with_error(spreads[2], 3))
             .cell("strongest mode late", |(_, spreads)| with_error(spreads[3], 3))
             .cell("mean velocity late (m/s)", |(_, spreads)| with_error(spreads[4], 3))
             .frame("cases", "Every case"),
-        Rows::of(cases.iter().filter(|((_, damping, _), _)| damping.is_some()))
+        FrameBuilder::of(cases.iter().filter(|((_, damping, _), _)| damping.is_some()))
             .number("γ_N (1/s)", 0, |((_, damping, _), _)| *damping)
             .cells(late, |(_, spreads)| drawn(spreads[1]))
             .cells(start, |(_, spreads)| drawn(spreads[0]))

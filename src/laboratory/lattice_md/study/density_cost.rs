@@ -1,20 +1,22 @@
 //! Clock periods of a step against particle number and density, by BP93's clock model: its figures 3 and 4.
 
 use super::StudyError;
-use super::efficiency_table::{Choice, Question, counting_model, model_of, printed_clocks, step};
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
+use super::efficiency_table::{TableFeatures, TableScene, counting_model, model_of, printed_clocks, step};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
 use crate::model::clock::Clock;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::results::{Lab, Made, Size, side_by_side};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize, side_by_side};
 use crate::statistics::slope;
 use std::f64::consts::PI;
 use stripmine_kernels::isa::OpCounts;
-use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_physics::method::lattice_md::keys::{EXECUTION, SEARCH};
-use stripmine_physics::method::lattice_md::options::By;
-use stripmine_physics::method::lattice_md::{Document, Lengths, Part, assemble, ledger, rival_ledger};
+use stripmine_physics::method::lattice_md::options::SearchKind;
+use stripmine_physics::method::lattice_md::{
+    GranularDocument, Lengths, Part, assemble, ledger, rival_ledger,
+};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
@@ -29,7 +31,7 @@ pub(super) const OCCUPANCIES: [f64; 6] = [0.05, 0.1, 0.2, 0.25, 0.35, 0.5];
 
 /// Statistics of neighbour lists at a density, measured in a run because no model predicts them.
 #[derive(Clone, Copy)]
-pub(super) struct ListFigures {
+pub(super) struct ListStatistics {
     /// ρ on cells as wide as the radius.
     pub(super) occupancy: f64,
     /// Candidates tested in a step, and those in contact, per disc.
@@ -38,19 +40,19 @@ pub(super) struct ListFigures {
     pub(super) steps_a_list: f64,
 }
 
-impl ListFigures {
+impl ListStatistics {
     /// Elements of a vector whose length depends on lists; `None` for any other length.
-    pub(super) fn length(&self, length: Length, discs: f64) -> Option<f64> {
+    pub(super) fn length(&self, length: VectorLength, discs: f64) -> Option<f64> {
         match length {
-            Length::Candidates => Some(self.candidates * discs),
-            Length::Pairs => Some(self.contacts * discs),
+            VectorLength::Candidates => Some(self.candidates * discs),
+            VectorLength::Pairs => Some(self.contacts * discs),
             _ => None,
         }
     }
 }
 
 /// Clock periods of a step.
-struct Cost {
+struct StepCost {
     particles: usize,
     /// From BP93's formula and NOP; BP93 has no formula for lists.
     printed: Option<f64>,
@@ -59,43 +61,43 @@ struct Cost {
 }
 
 /// Curve over NP with LMAX or ρ fixed.
-struct Curve {
+struct CostCurve {
     cells: Option<usize>,
     occupancy: Option<f64>,
-    costs: Vec<Cost>,
+    costs: Vec<StepCost>,
 }
 
 /// Computes the curves with the clock of the paper's machine.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     Ok(density_cost(&machines::preset("paper")?)?)
 }
 
 /// Computes the curves with the clock of a machine.
-pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
+pub(crate) fn density_cost(machine: &MachineModel) -> Result<FinishedItem, StudyError> {
     let occupancies: Vec<f64> = OCCUPANCIES.into_iter().filter(|&occupancy| occupancy < CEILING).collect();
     let figures = side_by_side(&occupancies, |&occupancy| list_figures(occupancy))?;
-    let model = Model::of(machine)?;
+    let model = ClockedModel::of(machine)?;
     let cells = LATTICES.iter().map(|&cells| model.over_particles(Some(cells), None));
     let densities = OCCUPANCIES.iter().map(|&occupancy| model.over_particles(None, Some(occupancy)));
     let (cells, densities): (Vec<_>, Vec<_>) =
         (cells.collect::<Result<_, _>>()?, densities.collect::<Result<_, _>>()?);
-    let lists: Vec<Curve> = figures.iter().map(|figures| model.with_lists(figures)).collect();
+    let lists: Vec<CostCurve> = figures.iter().map(|figures| model.with_lists(figures)).collect();
     let dense = &lists[lists.len() - 1];
     let rivals = cells.iter().map(|curve| (curve, dense)).chain(by_density(&densities, &lists));
-    Ok(Made::of([
+    Ok(FinishedItem::of([
         curves(&[("vector", &cells), ("vector", &densities), ("lists", &lists)]),
-        Rows::of(rivals)
+        FrameBuilder::of(rivals)
             .cell("LMAX", |(curve, _)| curve.cells.map(|cells| cells as u64))
             .number("ρ", 2, |(curve, _)| curve.occupancy)
             .number("NP", 0, |(curve, lists)| break_even(curve, lists))
             .frame("break_even", "Number of particles from which on a vector step is the shorter one"),
-        Rows::of(&figures)
+        FrameBuilder::of(&figures)
             .number("occupancy ρ", 2, |figures| figures.occupancy)
             .number("candidates a disc", 2, |figures| figures.candidates)
             .number("contacts a disc", 3, |figures| figures.contacts)
             .number("steps a list serves", 1, |figures| figures.steps_a_list)
             .frame("lists", "Candidates and contacts in the lists"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .text("machine", |()| machine.title())
             .count("operations of a test", |()| model.test().total())
             .number("ceiling", 3, |()| CEILING)
@@ -106,10 +108,10 @@ pub(crate) fn density_cost(machine: &MachineModel) -> Result<Made, StudyError> {
     .with_seeds([1]))
 }
 
-fn curves(groups: &[(&str, &[Curve])]) -> Frame {
+fn curves(groups: &[(&str, &[CostCurve])]) -> ResultFrame {
     let curves = groups.iter().flat_map(|(method, curves)| curves.iter().map(move |curve| (*method, curve)));
     let rows = curves.flat_map(|(method, curve)| curve.costs.iter().map(move |cost| (method, curve, cost)));
-    Rows::of(rows)
+    FrameBuilder::of(rows)
         .text("method", |(method, ..)| *method)
         .cell("LMAX", |(_, curve, _)| curve.cells.map(|cells| cells as u64))
         .number("ρ", 2, |(_, curve, _)| curve.occupancy)
@@ -120,13 +122,16 @@ fn curves(groups: &[(&str, &[Curve])]) -> Frame {
 }
 
 /// Pairs of curves of the lattice and of lists at the same density.
-fn by_density<'c>(lattice: &'c [Curve], lists: &'c [Curve]) -> impl Iterator<Item = (&'c Curve, &'c Curve)> {
-    let of = |lists: &Curve| lattice.iter().find(|curve| curve.occupancy == lists.occupancy);
+fn by_density<'c>(
+    lattice: &'c [CostCurve],
+    lists: &'c [CostCurve],
+) -> impl Iterator<Item = (&'c CostCurve, &'c CostCurve)> {
+    let of = |lists: &CostCurve| lattice.iter().find(|curve| curve.occupancy == lists.occupancy);
     lists.iter().filter_map(move |lists| Some((of(lists)?, lists)))
 }
 
 /// NP above which the lattice is cheaper than lists, interpolated between points of the curves.
-fn break_even(lattice: &Curve, lists: &Curve) -> Option<f64> {
+fn break_even(lattice: &CostCurve, lists: &CostCurve) -> Option<f64> {
     let ratios = lattice.costs.iter().filter_map(|cost| {
         let rival = lists.costs.iter().find(|rival| rival.particles == cost.particles)?;
         Some((cost.particles as f64, cost.counted / rival.counted))
@@ -149,13 +154,13 @@ pub(super) fn power(points: impl Iterator<Item = (f64, Option<f64>)>) -> Option<
     (densities.len() > 1).then(|| slope(&densities, &particles))
 }
 
-fn break_even_power(lattice: &[Curve], lists: &[Curve]) -> Option<f64> {
-    let density = |curve: &Curve| curve.occupancy.unwrap_or(f64::NAN);
+fn break_even_power(lattice: &[CostCurve], lists: &[CostCurve]) -> Option<f64> {
+    let density = |curve: &CostCurve| curve.occupancy.unwrap_or(f64::NAN);
     power(by_density(lattice, lists).map(|(lattice, lists)| (density(lists), break_even(lattice, lists))))
 }
 
 /// Largest ratio of the costs of lists between densities at one number of particles.
-fn spread_by_density(lists: &[Curve]) -> Option<f64> {
+fn spread_by_density(lists: &[CostCurve]) -> Option<f64> {
     let ratios = (0..lists.first()?.costs.len()).filter_map(|at| {
         let costs = || lists.iter().filter_map(move |curve| Some(curve.costs.get(at)?.counted));
         Some(costs().reduce(f64::max)? / costs().reduce(f64::min)?)
@@ -169,19 +174,19 @@ fn particles() -> impl Iterator<Item = usize> {
 }
 
 /// Counted operations, and the machine whose clock is applied.
-struct Model<'m> {
+struct ClockedModel<'m> {
     machine: &'m MachineModel,
-    choice: Choice,
+    choice: TableFeatures,
     lattice: Ledger,
     rival: Ledger,
 }
 
-impl Model<'_> {
+impl ClockedModel<'_> {
     /// Counts the operations, which do not depend on the size of the lattice.
-    fn of(machine: &MachineModel) -> Result<Model<'_>, StudyError> {
-        let question = Question::default();
+    fn of(machine: &MachineModel) -> Result<ClockedModel<'_>, StudyError> {
+        let question = TableScene::default();
         let (programs, rival) = (step(&question)?.0, rival_ledger(&model_of(&question)?));
-        Ok(Model { machine, choice: question.choice, lattice: ledger(&programs), rival })
+        Ok(ClockedModel { machine, choice: question.choice, lattice: ledger(&programs), rival })
     }
 
     fn clocks(&self, clock: Clock, counts: &OpCounts, n: u64) -> f64 {
@@ -189,7 +194,7 @@ impl Model<'_> {
     }
 
     /// Curve of the vector algorithm, with LMAX or ρ fixed.
-    fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<Curve, StudyError> {
+    fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<CostCurve, StudyError> {
         let full = CEILING.max(occupancy.unwrap_or(0.0));
         let lattices = particles().map(|particles| {
             let of_density = || (particles as f64 / occupancy.unwrap_or(1.0)).ceil() as usize;
@@ -200,10 +205,10 @@ impl Model<'_> {
             is_wide && particles as f64 <= full * cells as f64 + 1.0
         });
         let costs = costs.map(|(particles, cells)| self.step(particles, cells));
-        Ok(Curve { cells, occupancy, costs: costs.collect::<Result<_, _>>()? })
+        Ok(CostCurve { cells, occupancy, costs: costs.collect::<Result<_, _>>()? })
     }
 
-    fn step(&self, particles: usize, cells: usize) -> Result<Cost, MeasurementError> {
+    fn step(&self, particles: usize, cells: usize) -> Result<StepCost, MeasurementError> {
         let lengths = Lengths::new(&counting_model(cells, self.choice)?, particles, particles);
         let counted = self.lattice.parts().into_iter().map(|(_, length, counts)| {
             self.clocks(Clock::Paper, &counts, lengths.range(length).len() as u64)
@@ -211,11 +216,11 @@ impl Model<'_> {
         let printed = Part::ALL
             .iter()
             .filter_map(|&part| printed_clocks(part, self.machine, particles as u64, cells as u64));
-        Ok(Cost { particles, printed: Some(printed.sum()), counted: counted.sum() })
+        Ok(StepCost { particles, printed: Some(printed.sum()), counted: counted.sum() })
     }
 
     /// Curve of scalar neighbour lists: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is omitted.
-    fn with_lists(&self, figures: &ListFigures) -> Curve {
+    fn with_lists(&self, figures: &ListStatistics) -> CostCurve {
         let rows: Vec<_> =
             self.rival.parts().into_iter().filter(|(part, ..)| *part != Part::Index.name()).collect();
         let costs = particles().map(|particles| {
@@ -225,38 +230,38 @@ impl Model<'_> {
                 .iter()
                 .map(|(_, length, counts)| clocks(counts, figures.length(*length, np).unwrap_or(np)));
             let making = clocks(&self.test(), 0.5 * np * (np - 1.0)) / figures.steps_a_list;
-            Cost { particles, printed: None, counted: visiting.sum::<f64>() + making }
+            StepCost { particles, printed: None, counted: visiting.sum::<f64>() + making }
         });
-        Curve { cells: None, occupancy: Some(figures.occupancy), costs: costs.collect() }
+        CostCurve { cells: None, occupancy: Some(figures.occupancy), costs: costs.collect() }
     }
 
     /// Operations of the distance and contact test of one pair.
     fn test(&self) -> OpCounts {
         let mut test = OpCounts::default();
-        let rows = self.rival.entries().iter().filter(|entry| entry.length == Length::Candidates);
+        let rows = self.rival.entries().iter().filter(|entry| entry.length == VectorLength::Candidates);
         rows.for_each(|entry| test.add(&entry.counts));
         test
     }
 }
 
 /// Measures the lists of a warm gas of about a thousand discs.
-pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
+pub(super) fn list_figures(occupancy: f64) -> Result<ListStatistics, StudyError> {
     const EQUILIBRATION: u64 = 200;
     const STEPS: u64 = 1000;
     let scene = Overrides::new().set(&COUNT, 1024_u64).set(&PACKING_FRACTION, PI * occupancy);
-    let overrides = scene.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
-    let mut method = assemble(&Document::load("bench", &overrides.texts())?.check()?)?;
+    let overrides = scene.set(&SEARCH, SearchKind::NeighborList).set(&EXECUTION, "chained");
+    let mut method = assemble(&GranularDocument::load("bench", &overrides.texts())?.check()?)?;
     (0..EQUILIBRATION).try_for_each(|_| method.step())?;
     let made = method.lists().map_or(0, |(_, rebuilds)| rebuilds);
     let mut sums = [0; 2];
     for _ in 0..STEPS {
         method.step()?;
-        sums[0] += method.length(Length::Candidates);
-        sums[1] += method.length(Length::Pairs);
+        sums[0] += method.length(VectorLength::Candidates);
+        sums[1] += method.length(VectorLength::Pairs);
     }
     let made = method.lists().map_or(0, |(_, rebuilds)| rebuilds) - made;
     let discs = method.particles().grain_count() as f64 * STEPS as f64;
-    Ok(ListFigures {
+    Ok(ListStatistics {
         occupancy,
         candidates: sums[0] as f64 / discs,
         contacts: sums[1] as f64 / discs,
@@ -268,12 +273,12 @@ pub(super) fn list_figures(occupancy: f64) -> Result<ListFigures, StudyError> {
 mod tests {
     use super::*;
 
-    fn curve(occupancy: f64, cost: impl Fn(f64) -> f64) -> Curve {
+    fn curve(occupancy: f64, cost: impl Fn(f64) -> f64) -> CostCurve {
         let costs = [10_usize, 100, 1000, 10_000, 100_000].map(|particles| {
             let counted = cost(particles as f64);
-            Cost { particles, printed: None, counted }
+            StepCost { particles, printed: None, counted }
         });
-        Curve { cells: None, occupancy: Some(occupancy), costs: costs.into() }
+        CostCurve { cells: None, occupancy: Some(occupancy), costs: costs.into() }
     }
 
     #[test]

@@ -1,23 +1,23 @@
 //! Comparison of lattice and neighbour lists along trajectories: BP93, section 5, "no differences in the results".
 
 use super::StudyError;
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::results::{Lab, Made, Meter, Size};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use stripmine_physics::method::lattice_md::keys::{EXECUTION, NORMAL_DAMPING, SEARCH};
-use stripmine_physics::method::lattice_md::options::By;
-use stripmine_physics::method::lattice_md::{Document, assemble};
+use stripmine_physics::method::lattice_md::options::SearchKind;
+use stripmine_physics::method::lattice_md::{GranularDocument, assemble};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 
 /// Name, preset, overrides, and number of steps.
-type Scene = (&'static str, &'static str, Overrides, u64);
+type ComparedScene = (&'static str, &'static str, Overrides, u64);
 
 /// Steps between two comparisons.
 const STRIDE: u64 = 1000;
 
 /// Runs each scene with both methods.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let few = Overrides::new().set(&COUNT, 400_u64);
     let dense = few.clone().set(&PACKING_FRACTION, 0.84).set(&NORMAL_DAMPING, 0.5);
     let scenes = [
@@ -25,10 +25,10 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         ("density waves", "pipe-small", Overrides::new(), 4000),
         ("elastic gas", "dense-gas", few, 2000),
     ];
-    let states = Meter::new(scenes.len() as f64, lab.progress).each(&scenes, compared)?;
+    let states = ProgressMeter::new(scenes.len() as f64, lab.progress).each(&scenes, compared)?;
     let rows =
         scenes.iter().zip(&states).flat_map(|(scene, states)| states.iter().map(move |it| (scene.0, it)));
-    Ok(Made::of([Rows::of(rows)
+    Ok(FinishedItem::of([FrameBuilder::of(rows)
         .text("scene", |(name, _)| *name)
         .count("grains", |(_, (_, [lattice, _]))| lattice.grain_count())
         .count("step", |(_, (step, _))| *step)
@@ -45,12 +45,12 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
 }
 
 /// Steps, and the particles with the lattice and with lists.
-fn compared((_, preset, overrides, steps): &Scene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
-    let start = |search: By| {
+fn compared((_, preset, overrides, steps): &ComparedScene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
+    let start = |search: SearchKind| {
         let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
-        Ok::<_, StudyError>(assemble(&Document::load(preset, &overrides.texts())?.check()?)?)
+        Ok::<_, StudyError>(assemble(&GranularDocument::load(preset, &overrides.texts())?.check()?)?)
     };
-    let (mut lattice, mut lists) = (start(By::Lattice)?, start(By::NeighborList)?);
+    let (mut lattice, mut lists) = (start(SearchKind::Lattice)?, start(SearchKind::NeighborList)?);
     let mut states = vec![];
     for step in 1..=*steps {
         lattice.step()?;

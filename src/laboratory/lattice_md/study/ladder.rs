@@ -1,54 +1,54 @@
 //! Clock periods of one step by every clock model, from the trivial one to chaining and memory ports.
 
-use super::efficiency_table::{Question, QuestionError, step};
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::model::clock::{Clock, Memory, Work, convoys};
+use super::efficiency_table::{TableScene, TableSceneError, step};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::model::clock::{Clock, MemoryModel, ProgramWork, convoys};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::results::{Lab, Made, Size};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use stripmine_physics::method::lattice_md::Part;
 
 /// Machines of the report.
 const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-1", "sx-aurora"];
 
 /// Counts the default scene on every machine of the report.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let machines = MACHINES.map(machines::preset).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let ladders = machines.iter().map(|machine| Ladder::of(&Question::default(), machine));
+    let ladders = machines.iter().map(|machine| Ladder::of(&TableScene::default(), machine));
     let ladders = ladders.collect::<Result<Vec<_>, _>>()?;
     let rungs = ladders.iter().zip(1..).map(|(it, at)| it.rungs(format!("ladder_{at}")));
-    let meanings = Rows::of(Clock::ALL)
+    let meanings = FrameBuilder::of(Clock::ALL)
         .text("clock", |clock| clock.name())
         .text("meaning", |clock| clock.meaning())
         .frame("clocks", "What each clock charges");
-    Ok(Made::of(rungs.chain([summary(&ladders), meanings])))
+    Ok(FinishedItem::of(rungs.chain([summary(&ladders), meanings])))
 }
 
 /// Item of one machine: rungs, convoys, summary.
-pub(crate) fn ladder(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
+pub(crate) fn ladder(question: &TableScene, machine: &MachineModel) -> Result<FinishedItem, TableSceneError> {
     let ladder = Ladder::of(question, machine)?;
-    Ok(Made::of([ladder.rungs("ladder".into()), ladder.convoys(), summary(&[ladder])]))
+    Ok(FinishedItem::of([ladder.rungs("ladder".into()), ladder.convoys(), summary(&[ladder])]))
 }
 
 /// Programs of a step, and the machine whose clock periods are counted.
 struct Ladder<'m> {
-    works: Vec<(Part, Work, u64)>,
+    works: Vec<(Part, ProgramWork, u64)>,
     discs: usize,
     cells: usize,
     machine: &'m MachineModel,
 }
 
 impl Ladder<'_> {
-    fn of<'m>(question: &Question, machine: &'m MachineModel) -> Result<Ladder<'m>, QuestionError> {
+    fn of<'m>(question: &TableScene, machine: &'m MachineModel) -> Result<Ladder<'m>, TableSceneError> {
         let (programs, lengths) = step(question)?;
         let work = programs.iter().map(|step| {
-            (step.part, Work::of(step.program.as_ref()), lengths.range(step.length).len() as u64)
+            (step.part, ProgramWork::of(step.program.as_ref()), lengths.range(step.length).len() as u64)
         });
         Ok(Ladder { works: work.collect(), discs: lengths.discs, cells: lengths.cells, machine })
     }
 
-    fn of_part(&self, part: Part) -> impl Iterator<Item = &(Part, Work, u64)> {
+    fn of_part(&self, part: Part) -> impl Iterator<Item = &(Part, ProgramWork, u64)> {
         self.works.iter().filter(move |(of, ..)| *of == part)
     }
 
@@ -78,9 +78,10 @@ impl Ladder<'_> {
         1.0 - self.step(Clock::Ports, &known) / self.step(Clock::Ports, self.machine)
     }
 
-    fn rungs(&self, name: String) -> Frame {
+    fn rungs(&self, name: String) -> ResultFrame {
         let step = |clock: Clock| self.step(clock, self.machine);
-        let mut rows = Rows::of(Clock::ALL.iter().enumerate()).text("clock", |(_, clock)| clock.name());
+        let mut rows =
+            FrameBuilder::of(Clock::ALL.iter().enumerate()).text("clock", |(_, clock)| clock.name());
         for part in self.parts() {
             rows = rows.number(part.name(), 0, |(_, clock)| self.clocks(**clock, self.machine, part));
         }
@@ -93,7 +94,7 @@ impl Ladder<'_> {
             .frame(name, format!("Clock periods of one step by every clock: {}", self.machine.title()))
     }
 
-    fn convoys(&self) -> Frame {
+    fn convoys(&self) -> ResultFrame {
         // Convoys, and instructions in them.
         let count = |part: Part, memory| -> (usize, usize) {
             let orders = self.of_part(part).filter_map(|(_, work, _)| work.order());
@@ -102,17 +103,17 @@ impl Ladder<'_> {
                 (convoys + set.len(), instructions + set.iter().map(|it| it.instructions).sum::<usize>())
             })
         };
-        Rows::of(self.parts())
+        FrameBuilder::of(self.parts())
             .text("part", |part| part.name())
-            .count("instructions", |part| count(*part, Memory::NeverBusy).1)
-            .count("convoys, memory never busy", |part| count(*part, Memory::NeverBusy).0)
-            .count("convoys with memory ports", |part| count(*part, Memory::Ports).0)
+            .count("instructions", |part| count(*part, MemoryModel::NeverBusy).1)
+            .count("convoys, memory never busy", |part| count(*part, MemoryModel::NeverBusy).0)
+            .count("convoys with memory ports", |part| count(*part, MemoryModel::Ports).0)
             .frame("convoys", "Convoys: instructions that run at once")
     }
 }
 
-fn summary(ladders: &[Ladder<'_>]) -> Frame {
-    Rows::of(ladders)
+fn summary(ladders: &[Ladder<'_>]) -> ResultFrame {
+    FrameBuilder::of(ladders)
         .text("machine", |it| it.machine.title())
         .count("NP", |it| it.discs)
         .count("LMAX", |it| it.cells)
@@ -127,7 +128,7 @@ fn summary(ladders: &[Ladder<'_>]) -> Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{Expressions, Scope};
+    use crate::frame::{ExpressionScope, Expressions};
     use crate::laboratory::lattice_md::study::efficiency_table::efficiency_table;
     use crate::model::machines::{names, preset};
 
@@ -135,7 +136,7 @@ mod tests {
     fn every_machine_has_every_rung() {
         for name in names() {
             let machine = preset(name).unwrap();
-            let ladder = Ladder::of(&Question::default(), &machine).unwrap();
+            let ladder = Ladder::of(&TableScene::default(), &machine).unwrap();
             let clocks = |clock: Clock| ladder.step(clock, &machine);
             assert!(
                 Clock::ALL.iter().all(|clock| clocks(*clock).is_finite() && clocks(*clock) > 0.0),
@@ -150,9 +151,9 @@ mod tests {
 
     #[test]
     fn the_paper_rung_equals_the_efficiency_table() {
-        let (question, machine) = (Question::default(), preset("cray-1").unwrap());
+        let (question, machine) = (TableScene::default(), preset("cray-1").unwrap());
         let ladder = Ladder::of(&question, &machine).unwrap();
-        let scope = Scope::of(efficiency_table(&question, &machine).unwrap().frames);
+        let scope = ExpressionScope::of(efficiency_table(&question, &machine).unwrap().frames);
         let of_table = Expressions::new().value("efficiency_table.at(part='step').clocks_ours", &scope);
         assert_eq!(ladder.step(Clock::Paper, &machine), f64::try_from(of_table.unwrap()).unwrap());
     }

@@ -1,13 +1,13 @@
 //! Vector instructions of a step, as text.
 
-use super::efficiency_table::{Question, QuestionError, step};
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::results::{Lab, Made, Size};
+use super::efficiency_table::{TableScene, TableSceneError, step};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use stripmine_physics::method::lattice_md::Part;
 
 /// Instructions and listing of the programs of a part.
-pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String), QuestionError> {
+pub(crate) fn listing(part: Part, question: &TableScene) -> Result<(ResultFrame, String), TableSceneError> {
     let (programs, lengths) = step(question)?;
     let (mut rows, mut text) = (vec![], String::new());
     for step in programs.iter().filter(|step| step.part == part) {
@@ -16,7 +16,7 @@ pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String)
             &format!("; {}: vectors of n = {length} = {n} elements\n{}", part.name(), step.program.listing());
         rows.extend(step.program.lines().into_iter().map(|line| (length, n, line)));
     }
-    let frame = Rows::of(rows)
+    let frame = FrameBuilder::of(rows)
         .text("n is", |(length, ..)| *length)
         .count("n", |(_, n, _)| *n)
         .text("section", |(.., line)| line.section)
@@ -28,8 +28,8 @@ pub(crate) fn listing(part: Part, question: &Question) -> Result<(Frame, String)
 }
 
 /// Lists BP93's program, then ours.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let ours = Question::default();
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let ours = TableScene::default();
     let printed = ours.printed();
     let (mut rows, mut files) = (vec![], vec![]);
     for (text, prefix, question) in [("printed", "printed_", &printed), ("ours", "", &ours)] {
@@ -41,10 +41,10 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             }
         }
     }
-    let frame = Rows::of(rows)
+    let frame = FrameBuilder::of(rows)
         .text("text", |(text, ..)| *text)
         .text("part", |(_, part, _)| *part)
         .count("instructions", |(.., instructions)| *instructions)
         .frame("instructions", "Vector instructions of a step");
-    Ok(Made { files, ..Made::of([frame]) })
+    Ok(FinishedItem { files, ..FinishedItem::of([frame]) })
 }

@@ -4,12 +4,13 @@ use super::samples::Samples;
 use crate::model::host::{Amounts, HostModel, OutOfRange};
 use std::f64::consts::PI;
 use std::time::Instant;
-use stripmine_kernels::ledger::Length;
+use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
-use stripmine_physics::method::Failure;
+use stripmine_physics::method::PhysicsFailure;
 use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, ENGINE, EXECUTION, SEARCH};
 use stripmine_physics::method::lattice_md::{
-    Checked, Document, Grains, Lengths, Phase, StepProgram, assemble, model, programs,
+    CheckedGranularScene, GranularDocument, Lengths, Phase, StepProgram, SteppedGrains, assemble, model,
+    programs,
 };
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, PRECISION};
@@ -28,7 +29,7 @@ const SHORT: f64 = 100_000.0;
 
 /// Parameters of a run of the bench scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct BenchRun {
     pub(super) particles: usize,
     /// ρ on cells as wide as the radius.
     pub(super) occupancy: f64,
@@ -37,9 +38,9 @@ pub(super) struct Run {
     pub(super) execution: &'static str,
 }
 
-impl Run {
+impl BenchRun {
     /// Loads the scene with further overrides.
-    pub(super) fn scene(self, further: &Overrides) -> Result<Checked, MeasurementError> {
+    pub(super) fn scene(self, further: &Overrides) -> Result<CheckedGranularScene, MeasurementError> {
         let scene = Overrides::new().set(&COUNT, self.particles).set(&PRECISION, self.precision);
         let scene = scene.set(&PACKING_FRACTION, PI * self.occupancy);
         let scene = match self.execution {
@@ -52,7 +53,7 @@ impl Run {
             // As in BP93; the largest cells that the geometry allows would be fewer.
             false => scene.set(&SEARCH, "lattice").set(&CELL_EDGE, 0.5),
         };
-        Ok(Document::load("bench", &scene.and(further).texts())?.check()?)
+        Ok(GranularDocument::load("bench", &scene.and(further).texts())?.check()?)
     }
 
     /// Name of the rates of a run whose work depends on the data; `None` for programs. A sparse lattice is searched by another algorithm.
@@ -79,16 +80,16 @@ impl Run {
 }
 
 /// Programs of a step of a scene, and its vector lengths.
-pub(super) fn step(checked: &Checked) -> (Vec<StepProgram>, Lengths) {
+pub(super) fn step(checked: &CheckedGranularScene) -> (Vec<StepProgram>, Lengths) {
     let (model, discs) = (model(checked), &checked.particles);
     let lengths = Lengths::new(&model, discs.grain_count(), discs.len());
     (programs(&model, checked.scene.machine.precision), lengths)
 }
 
 /// Run with its timing samples.
-pub(super) struct TimedRun {
-    pub(super) run: Run,
-    pub(super) checked: Checked,
+pub(super) struct PhaseTimedRun {
+    pub(super) run: BenchRun,
+    pub(super) checked: CheckedGranularScene,
     /// Number of steps, and number of list builds in them.
     steps: usize,
     made: usize,
@@ -102,10 +103,10 @@ pub(super) struct TimedRun {
     makings: Samples,
 }
 
-impl TimedRun {
+impl PhaseTimedRun {
     /// Makes a run without samples.
-    pub(super) fn new(run: Run, further: &Overrides) -> Result<TimedRun, MeasurementError> {
-        Ok(TimedRun {
+    pub(super) fn new(run: BenchRun, further: &Overrides) -> Result<PhaseTimedRun, MeasurementError> {
+        Ok(PhaseTimedRun {
             run,
             checked: run.scene(further)?,
             steps: 0,
@@ -138,8 +139,13 @@ impl TimedRun {
 
     /// Runs some steps, as a sample if they are timed. List builds are always counted, because they are rare. Returns the nanoseconds of the
     /// shortest step.
-    fn advance(&mut self, engine: &mut Grains, count: usize, is_timed: bool) -> Result<f64, Failure> {
-        let made = |engine: &Grains| engine.lists().map_or(0, |(_, made)| made);
+    fn advance(
+        &mut self,
+        engine: &mut SteppedGrains,
+        count: usize,
+        is_timed: bool,
+    ) -> Result<f64, PhysicsFailure> {
+        let made = |engine: &SteppedGrains| engine.lists().map_or(0, |(_, made)| made);
         let (mut shortest, mut making, mut upkeeps) = (f64::INFINITY, 0.0, count);
         engine.reset_timings();
         for _ in 0..count {
@@ -156,7 +162,7 @@ impl TimedRun {
             if is_timed {
                 self.timed += 1;
                 self.entries += engine.lists().map_or(0, |(entries, _)| entries);
-                self.contacts += engine.length(Length::Pairs);
+                self.contacts += engine.length(VectorLength::Pairs);
             }
         }
         self.steps += count;

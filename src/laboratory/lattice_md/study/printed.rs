@@ -1,23 +1,25 @@
 //! BP93's printed program on this host: NOP·(n + D) compared with wall time by part, and whole steps from the CRAY's execution to today's engine.
 
 use super::density_cost::CEILING;
-use super::efficiency_table::{Choice, SOURCES_PARTS, counting_model};
+use super::efficiency_table::{SOURCES_PARTS, TableFeatures, counting_model};
 use super::samples::Samples;
-use crate::console::Failure;
-use crate::frame::{Cell, Frame, Rows};
-use crate::laboratory::rates::{self, Case, Measured, Own, Reading, Spread, given, rates};
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::laboratory::rates::{
+    self, CaseReading, MeasuredCase, ProcessSpread, RateCase, StudyWork, given, rates,
+};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use rand::RngExt;
 use std::f64::consts::PI;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::keys::{CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, SEARCH, TEXT};
-use stripmine_physics::method::lattice_md::options::{By, EngineChoice};
+use stripmine_physics::method::lattice_md::options::{EngineChoice, SearchKind};
 use stripmine_physics::method::lattice_md::{
-    Arrays, Model, Part, ProgramText, StepProgram, execute, programs,
+    GranularModel, Part, ProgramArrays, ProgramVersion, StepProgram, execute, programs,
 };
 use stripmine_physics::method::throughput::MeasurementError;
-use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles, in_space};
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, Precision};
 
 /// ρ of the measurements over n.
@@ -34,30 +36,30 @@ const SHORT: [usize; 9] = [25, 49, 100, 170, 290, 500, 1000, CELLS, 100_000];
 const LONG: [usize; 5] = [2000, 5000, 30_000, 300_000, 1_000_000];
 
 /// Configurations from 1993 to today, each with one more change: name, program, execution, and true for cells of the paper's size.
-const WAYS: [(&str, ProgramText, &str, bool); 6] = [
-    ("printed, eager", ProgramText::Printed, "eager", true),
-    ("printed, strips of 256", ProgramText::Printed, "strip:256", true),
-    ("printed, chained", ProgramText::Printed, "chained", true),
-    ("ours, chained", ProgramText::Ours, "chained", true),
-    ("ours, chained, largest cells", ProgramText::Ours, "chained", false),
-    ("fast lattice", ProgramText::Ours, FAST, false),
+const WAYS: [(&str, ProgramVersion, &str, bool); 6] = [
+    ("printed, eager", ProgramVersion::Printed, "eager", true),
+    ("printed, strips of 256", ProgramVersion::Printed, "strip:256", true),
+    ("printed, chained", ProgramVersion::Printed, "chained", true),
+    ("ours, chained", ProgramVersion::Ours, "chained", true),
+    ("ours, chained, largest cells", ProgramVersion::Ours, "chained", false),
+    ("fast lattice", ProgramVersion::Ours, FAST, false),
 ];
 
 /// Name of the fast engine as an execution.
 const FAST: &str = "fast";
 
 /// Measured work: the parts of an eager step.
-pub(crate) const EAGER: Own = Own {
+pub(crate) const EAGER: StudyWork = StudyWork {
     name: "eager-parts",
     measure: |parameters| {
         let (cells, occupancy, is_ours, samples): (usize, f64, bool, usize) = given(parameters)?;
-        let choice = if is_ours { Choice::default() } else { Choice::default().printed() };
+        let choice = if is_ours { TableFeatures::default() } else { TableFeatures::default().printed() };
         Ok(eager(cells, occupancy, choice, samples)?)
     },
 };
 
 /// Times of a part of the eager step on a lattice.
-struct Timed {
+struct TimedPart {
     part: &'static str,
     cells: usize,
     occupancy: f64,
@@ -68,28 +70,28 @@ struct Timed {
     each: Vec<f64>,
 }
 
-impl Timed {
-    fn of(part: &'static str, cells: usize, occupancy: f64, measured: &Measured) -> Timed {
+impl TimedPart {
+    fn of(part: &'static str, cells: usize, occupancy: f64, measured: &MeasuredCase) -> TimedPart {
         let count = |kind: &str| measured.count(&format!("{kind} of {part}"));
         let each = measured.readings.iter().map(|it| 1e9 * it.parts.get(part).copied().unwrap_or(f64::NAN));
         let each = each.collect();
-        Timed { part, cells, occupancy, n: count("n") as usize, nop: count("NOP") as u64, each }
+        TimedPart { part, cells, occupancy, n: count("n") as usize, nop: count("NOP") as u64, each }
     }
 
-    fn ns(&self) -> Spread {
-        Spread::of(self.each.iter().copied())
+    fn ns(&self) -> ProcessSpread {
+        ProcessSpread::of(self.each.iter().copied())
     }
 }
 
 /// Fit of NOP·(n + D) to the times of a part on this host.
-struct Fitted {
+struct FittedPart {
     part: &'static str,
     nop: u64,
     /// Nanoseconds of a clock period, the cost of one more element per operation. The range is over processes and over fits that leave out
     /// one length.
-    period: Spread,
+    period: ProcessSpread,
     /// Pipeline depth D, with the same range.
-    depth: Spread,
+    depth: ProcessSpread,
     /// Longest vectors at which the line holds within [`HOLDS`].
     holds_to: usize,
     /// Largest relative difference from the line up to this length.
@@ -99,57 +101,57 @@ struct Fitted {
 }
 
 /// Measures the parts of the eager step and every configuration.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (cells, occupancies, samples, discs): (Vec<usize>, &[f64], u64, usize) = match size {
-        Size::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
-        Size::Full | Size::All => ([&SHORT[..], &LONG].concat(), &[0.05, 0.1, 0.5, 1.0], 8, 10_000),
+        StudySize::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
+        StudySize::Full | StudySize::All => ([&SHORT[..], &LONG].concat(), &[0.05, 0.1, 0.5, 1.0], 8, 10_000),
     };
     let over_n = cells.into_iter().map(|cells| (cells, OCCUPANCY, false));
     let over_density = occupancies.iter().map(|&occupancy| (CELLS, occupancy, false));
     let places: Vec<_> = over_n.chain(over_density).chain([(CELLS, OCCUPANCY, true)]).collect();
     let parts = places.iter().map(|&(cells, occupancy, ours)| {
         let parameters = serde_json::json!([cells, occupancy, ours, samples]);
-        let occupancy = Cell::Number(occupancy, 2);
-        Case::own(&EAGER, parameters).label("cells", cells as u64).label("occupancy", occupancy)
+        let occupancy = TableCell::Number(occupancy, 2);
+        RateCase::own(&EAGER, parameters).label("cells", cells as u64).label("occupancy", occupancy)
     });
     let scene =
         Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, SCENE * PI).set(&COHESIONLESS, false);
     let ways = WAYS.map(|(name, text, execution, is_narrow)| {
         let is_fast = execution == FAST;
         let set = match is_fast {
-            true => scene.clone().set(&ENGINE, EngineChoice::Fast).set(&SEARCH, By::Lattice),
+            true => scene.clone().set(&ENGINE, EngineChoice::Fast).set(&SEARCH, SearchKind::Lattice),
             false => scene.clone().set(&TEXT, text).set(&EXECUTION, execution),
         };
         let set = if is_narrow { set.set(&CELL_EDGE, 0.5) } else { set };
         // Only the work of the fast engine depends on the discs.
         let warm_up = if is_fast { 200 } else { 2 };
         let steps = (200_000 / discs).clamp(4, 200) as u64;
-        Case::steps("bench", &set, warm_up, steps).for_seconds(0.1).label("way", name)
+        RateCase::steps("bench", &set, warm_up, steps).for_seconds(0.1).label("way", name)
     });
     let measured = rates(lab, &parts.chain(ways).collect::<Vec<_>>())?;
     let (eager, ways) = measured.split_at(places.len());
     let all = places.iter().zip(eager).filter(|((.., ours), _)| !ours);
-    let timed: Vec<Timed> = all
+    let timed: Vec<TimedPart> = all
         .flat_map(|(&(cells, occupancy, _), it)| {
-            SOURCES_PARTS.map(|part| Timed::of(part.name(), cells, occupancy, it))
+            SOURCES_PARTS.map(|part| TimedPart::of(part.name(), cells, occupancy, it))
         })
         .collect();
     let fitted = SOURCES_PARTS.map(|part| fit(part.name(), &timed));
     let frames = [over_vectors(&timed, &fitted), fits(&fitted), densities(&timed), prices(ways)];
     let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, false));
-    let summary = Rows::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
+    let summary = FrameBuilder::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
         .cell("printed text, eager (µs)", |[printed, _]| printed.cost().cell(1e6, 0))
         .cell("our text, eager (µs)", |[_, ours]| ours.cost().cell(1e6, 0))
         .count("discs", |_| discs)
         .text("instruction set", |_| InstructionSet::best().name())
         .frame("summary", "The eager step of both texts, and the scene of the development");
-    let made = Made::of(frames.into_iter().chain([summary])).with_seeds([1]);
-    Ok(Made { processes: Some(rates::PROCESSES), ..made })
+    let made = FinishedItem::of(frames.into_iter().chain([summary])).with_seeds([1]);
+    Ok(FinishedItem { processes: Some(rates::PROCESSES), ..made })
 }
 
 /// Discs almost at rest, in a random share of the cells, one per cell.
-fn scattered(model: &Model, occupancy: f64) -> Particles {
-    let mut random = Stream::new(1, Purpose::Placement, 0);
+fn scattered(model: &GranularModel, occupancy: f64) -> Particles {
+    let mut random = Stream::new(1, RandomPurpose::Placement, 0);
     let mut discs = vec![];
     for row in 0..model.shape.rows() {
         for column in 0..model.shape.columns() {
@@ -161,7 +163,7 @@ fn scattered(model: &Model, occupancy: f64) -> Particles {
             let velocity = [0, 1].map(|_| random.random::<f64>() - 0.5);
             discs.push(Particle {
                 id: discs.len() as u32 + 1,
-                kind: Kind::Grain,
+                kind: ParticleKind::Grain,
                 position: in_space(at),
                 velocity: in_space(velocity),
                 angle: 0.0,
@@ -176,10 +178,15 @@ fn scattered(model: &Model, occupancy: f64) -> Particles {
 
 /// Median times of every part of an eager step on a lattice of about `cells` cells. The time does not depend on the data, so discs need not
 /// move; the step is so short that none leaves its cell.
-fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result<Reading, MeasurementError> {
-    let model = Model { dt: 1e-9, ..counting_model(cells, choice)? };
+fn eager(
+    cells: usize,
+    occupancy: f64,
+    choice: TableFeatures,
+    samples: usize,
+) -> Result<CaseReading, MeasurementError> {
+    let model = GranularModel { dt: 1e-9, ..counting_model(cells, choice)? };
     let particles = scattered(&model, occupancy);
-    let mut arrays = Arrays::<f64, f64>::new(&model, &particles);
+    let mut arrays = ProgramArrays::<f64, f64>::new(&model, &particles);
     drop(particles);
     let step = programs(&model, Precision::F64);
     let is_there = |part: &Part| step.iter().any(|step| step.part == *part);
@@ -194,7 +201,7 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result
             execute(&step, &parts[at..=at], &memory, lengths, Execution::Eager, set)
         })?;
     }
-    let mut reading = Reading { work: 1.0, ..Reading::default() };
+    let mut reading = CaseReading { work: 1.0, ..CaseReading::default() };
     for (part, samples) in parts.iter().zip(&all).filter(|(part, _)| SOURCES_PARTS.contains(part)) {
         let own = || step.iter().filter(|program| program.part == *part);
         let nop = |program: &StepProgram| -> u64 {
@@ -211,20 +218,20 @@ fn eager(cells: usize, occupancy: f64, choice: Choice, samples: usize) -> Result
 }
 
 /// Fits a straight line to the shortest vectors, up to the length at which it fails.
-fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
-    let mut points: Vec<&Timed> =
+fn fit(part: &'static str, timed: &[TimedPart]) -> FittedPart {
+    let mut points: Vec<&TimedPart> =
         timed.iter().filter(|timed| timed.part == part && timed.occupancy == OCCUPANCY).collect();
     points.sort_by_key(|timed| timed.n);
     let nop = points.first().map_or(1, |timed| timed.nop);
-    let over = |line: [f64; 2], timed: &Timed| {
+    let over = |line: [f64; 2], timed: &TimedPart| {
         timed.ns().median / (line[0] * (timed.n as f64 + line[1]) * nop as f64)
     };
     // Through the shortest vectors, except one left out.
-    let line = |count: usize, left_out: Option<usize>, ns: &dyn Fn(&Timed) -> f64| {
+    let line = |count: usize, left_out: Option<usize>, ns: &dyn Fn(&TimedPart) -> f64| {
         let kept = points[..count].iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
         straight(&kept.map(|(_, timed)| (timed.n as f64, ns(timed) / nop as f64)).collect::<Vec<_>>())
     };
-    let median = |timed: &Timed| timed.ns().median;
+    let median = |timed: &TimedPart| timed.ns().median;
     let worst = |count: usize| {
         let line = line(count, None, &median);
         points[..count].iter().map(|timed| (over(line, timed) - 1.0).abs()).fold(0.0, f64::max)
@@ -232,13 +239,16 @@ fn fit(part: &'static str, timed: &[Timed]) -> Fitted {
     let held = (3..=points.len()).rev().find(|&count| worst(count) <= HOLDS).unwrap_or(points.len().min(3));
     let middle = line(held, None, &median);
     let processes = points.first().map_or(0, |timed| timed.each.len());
-    let of_processes = (0..processes).map(|at| line(held, None, &|timed: &Timed| timed.each[at]));
+    let of_processes = (0..processes).map(|at| line(held, None, &|timed: &TimedPart| timed.each[at]));
     // A line through two points is not a test of the others.
     let without = (0..held).filter(|_| held > 3).map(|at| line(held, Some(at), &median));
     let others: Vec<[f64; 2]> = of_processes.chain(without).chain([middle]).collect();
-    let spread = |at: usize| Spread { median: middle[at], ..Spread::of(others.iter().map(|line| line[at])) };
+    let spread = |at: usize| ProcessSpread {
+        median: middle[at],
+        ..ProcessSpread::of(others.iter().map(|line| line[at]))
+    };
     let holds_to = points.get(held.saturating_sub(1)).map_or(0, |timed| timed.n);
-    Fitted {
+    FittedPart {
         part,
         nop,
         period: spread(0),
@@ -266,13 +276,13 @@ fn straight(points: &[(f64, f64)]) -> [f64; 2] {
 }
 
 /// Time per element and operation, with the line as far as it holds; no line for a part without a valid fit.
-fn over_vectors(timed: &[Timed], fitted: &[Fitted]) -> Frame {
+fn over_vectors(timed: &[TimedPart], fitted: &[FittedPart]) -> ResultFrame {
     let of_part = |part: &str| fitted.iter().find(|fitted| fitted.part == part && fitted.worst <= HOLDS);
-    let line = |it: &Timed| {
+    let line = |it: &TimedPart| {
         let fit = of_part(it.part).filter(|fit| it.n <= fit.holds_to)?;
         Some(fit.period.median * (it.n as f64 + fit.depth.median) / it.n as f64)
     };
-    Rows::of(timed.iter().filter(|it| it.occupancy == OCCUPANCY))
+    FrameBuilder::of(timed.iter().filter(|it| it.occupancy == OCCUPANCY))
         .text("part", |it| it.part)
         .count("n", |it| it.n)
         .cell("an element and operation (ns)", |it| it.ns().cell(1.0 / (it.nop as f64 * it.n as f64), 4))
@@ -281,8 +291,8 @@ fn over_vectors(timed: &[Timed], fitted: &[Fitted]) -> Frame {
         .frame("vectors", "Time an element and operation of the printed text, eager")
 }
 
-fn fits(fitted: &[Fitted]) -> Frame {
-    Rows::of(fitted)
+fn fits(fitted: &[FittedPart]) -> ResultFrame {
+    FrameBuilder::of(fitted)
         .text("part", |fitted| fitted.part)
         .count("NOP", |fitted| fitted.nop)
         .cell("clock period (ns)", |fitted| fitted.period.cell(1.0, 3))
@@ -293,11 +303,11 @@ fn fits(fitted: &[Fitted]) -> Frame {
         .frame("fits", "NOP·(n + D) on this host, part by part")
 }
 
-fn densities(timed: &[Timed]) -> Frame {
-    let mut of_places: Vec<&[Timed]> = timed.chunks(SOURCES_PARTS.len()).collect();
+fn densities(timed: &[TimedPart]) -> ResultFrame {
+    let mut of_places: Vec<&[TimedPart]> = timed.chunks(SOURCES_PARTS.len()).collect();
     of_places.retain(|parts| parts[0].cells == CELLS);
     of_places.sort_by(|a, b| a[0].occupancy.total_cmp(&b[0].occupancy));
-    Rows::of(of_places)
+    FrameBuilder::of(of_places)
         .number("occupancy ρ", 2, |parts| parts[0].occupancy)
         .cells(SOURCES_PARTS.map(|part| format!("{} (µs)", part.name())), |parts| {
             parts.iter().map(|it| it.ns().cell(1e-3, 2)).collect::<Vec<_>>()
@@ -306,10 +316,10 @@ fn densities(timed: &[Timed]) -> Frame {
         .frame("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
 }
 
-fn prices(ways: &[Measured]) -> Frame {
+fn prices(ways: &[MeasuredCase]) -> ResultFrame {
     let first = &ways[0];
     let before = std::iter::once(first).chain(ways);
-    Rows::of(WAYS.iter().zip(ways).zip(before).enumerate())
+    FrameBuilder::of(WAYS.iter().zip(ways).zip(before).enumerate())
         .count("step", |(at, _)| at + 1)
         .text("way", |(_, (((name, ..), _), _))| *name)
         .cell("ns a disc and step", |(_, ((_, own), _))| own.cost().cell(1e9, 1))
@@ -329,10 +339,10 @@ mod tests {
         assert!((period - 0.3).abs() < 1e-12 && (depth - 20.0).abs() < 1e-9, "{period} {depth}");
     }
 
-    fn timed(ns: impl Fn(usize) -> f64) -> Vec<Timed> {
+    fn timed(ns: impl Fn(usize) -> f64) -> Vec<TimedPart> {
         let one = |n: usize| {
             let each = [0.99, 1.0, 1.01].map(|share| share * ns(n)).to_vec();
-            Timed { part: "forces", cells: n, occupancy: OCCUPANCY, n, nop: 100, each }
+            TimedPart { part: "forces", cells: n, occupancy: OCCUPANCY, n, nop: 100, each }
         };
         [100, 1000, 10_000, 100_000, 1_000_000].map(one).into()
     }
@@ -352,10 +362,10 @@ mod tests {
     /// No line is drawn for a part without a valid fit.
     #[test]
     fn a_line_that_fails_is_not_drawn() {
-        let drawn = |timed: &[Timed]| {
+        let drawn = |timed: &[TimedPart]| {
             let frame = over_vectors(timed, &[fit("forces", timed)]);
             let at = frame.position("line").unwrap();
-            frame.rows.iter().filter(|row| matches!(row[at], crate::frame::Value::Number(_))).count()
+            frame.rows.iter().filter(|row| matches!(row[at], crate::frame::FrameValue::Number(_))).count()
         };
         assert_eq!(drawn(&timed(|n| 100.0 * (n as f64 + 30.0))), 5);
         assert_eq!(drawn(&timed(|n| (n as f64).powi(3))), 0);
@@ -363,7 +373,7 @@ mod tests {
 
     #[test]
     fn every_part_of_the_table_is_timed() {
-        let reading = eager(400, 0.5, Choice::default().printed(), 1).unwrap();
+        let reading = eager(400, 0.5, TableFeatures::default().printed(), 1).unwrap();
         for part in SOURCES_PARTS.map(Part::name) {
             let count = |kind: &str| reading.counts[&format!("{kind} of {part}")];
             assert!(count("n") > 100.0 && count("NOP") > 10.0 && reading.parts[part] > 0.0, "{reading:?}");

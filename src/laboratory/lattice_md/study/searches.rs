@@ -1,13 +1,13 @@
 //! Fastest neighbour search: rates by particles, density, search, precision and threads, compared with the methods of 1993.
 
 use super::density_cost::{crossing, power};
-use crate::console::Failure;
-use crate::frame::{Cell, Frame, Rows};
-use crate::laboratory::rates::{self, Case, Measured, rates};
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::laboratory::rates::{self, MeasuredCase, RateCase, rates};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use std::f64::consts::PI;
-use stripmine_physics::method::lattice_md::Document;
+use stripmine_physics::method::lattice_md::GranularDocument;
 use stripmine_physics::method::lattice_md::keys::{
     CELL_EDGE, COHESIONLESS, ENGINE, EXECUTION, INTEGRATOR, REBUILD, SEARCH, TEXT,
 };
@@ -27,7 +27,7 @@ const ALL_PAIRS: &str = "printed lists of all pairs";
 const PAPER: [&str; 3] = [EAGER, CHAINED, ALL_PAIRS];
 
 /// Measured cases of a study size.
-struct Grid {
+struct SearchGrid {
     /// Discs and decreasing packing fractions for the searches of today.
     discs: &'static [usize],
     packing_fractions: &'static [f64],
@@ -47,7 +47,7 @@ const MIDDLE: usize = 1000;
 /// Highest occupancy for the methods of 1993, on cells as wide as the radius.
 const DENSE: f64 = 0.25;
 
-const QUICK: Grid = Grid {
+const QUICK: SearchGrid = SearchGrid {
     discs: &[3000],
     packing_fractions: &[0.84, 0.3, 0.1],
     compared: 0,
@@ -57,7 +57,7 @@ const QUICK: Grid = Grid {
     seconds: 0.02,
 };
 
-const FULL: Grid = Grid {
+const FULL: SearchGrid = SearchGrid {
     discs: &[300, 3000, 10_000, 100_000],
     packing_fractions: &[0.84, 0.8, 0.6, 0.3, 0.1, 0.03],
     compared: 10_000,
@@ -69,7 +69,7 @@ const FULL: Grid = Grid {
 
 /// Case of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
+struct SearchCase {
     search: &'static str,
     precision: &'static str,
     /// Number of threads if wall time is measured; otherwise processor time is measured.
@@ -79,9 +79,9 @@ struct Place {
     packing_fraction: f64,
 }
 
-impl Place {
-    fn of(search: &'static str, discs: usize, packing_fraction: f64) -> Place {
-        Place { search, precision: F64, threads: None, discs, packing_fraction }
+impl SearchCase {
+    fn of(search: &'static str, discs: usize, packing_fraction: f64) -> SearchCase {
+        SearchCase { search, precision: F64, threads: None, discs, packing_fraction }
     }
 
     fn scene(self) -> Overrides {
@@ -113,17 +113,17 @@ impl Place {
         }
     }
 
-    fn case(self, seconds: f64) -> Case {
+    fn case(self, seconds: f64) -> RateCase {
         let [warm_up, steps] = self.steps();
         // Occupancy as requested.
         let occupancy = (1e6 * self.packing_fraction / PI).round() / 1e6;
-        let case = Case::steps("bench", &self.scene(), warm_up, steps)
+        let case = RateCase::steps("bench", &self.scene(), warm_up, steps)
             .for_seconds(seconds)
             .label("search", self.search)
             .label("precision", self.precision)
             .label("discs", self.discs as u64)
-            .label("packing fraction", Cell::Number(self.packing_fraction, 3))
-            .label("occupancy ρ", Cell::Number(occupancy, 3));
+            .label("packing fraction", TableCell::Number(self.packing_fraction, 3))
+            .label("occupancy ρ", TableCell::Number(occupancy, 3));
         match self.threads {
             Some(threads) => case.label("threads", threads as u64).on_threads(threads),
             None => case,
@@ -136,27 +136,27 @@ fn fast(scene: Overrides) -> Overrides {
 }
 
 /// All distinct cases of a grid.
-fn places(grid: &Grid, threads: usize) -> Vec<Place> {
+fn places(grid: &SearchGrid, threads: usize) -> Vec<SearchCase> {
     let crossed = |searches: &[&'static str], discs: &[usize], fractions: &[f64]| {
-        let of = |search, discs| fractions.iter().map(move |&phi| Place::of(search, discs, phi));
+        let of = |search, discs| fractions.iter().map(move |&phi| SearchCase::of(search, discs, phi));
         let each = searches.iter().flat_map(|&search| discs.iter().map(move |&discs| (search, discs)));
-        each.flat_map(|(search, discs)| of(search, discs)).collect::<Vec<Place>>()
+        each.flat_map(|(search, discs)| of(search, discs)).collect::<Vec<SearchCase>>()
     };
     let occupied = |occupancies: &[f64]| occupancies.iter().map(|rho| PI * rho).collect::<Vec<f64>>();
     let mut all = crossed(&TODAY, grid.discs, grid.packing_fractions);
     for &precision in &PRECISIONS[1..] {
         let same = all.iter().filter(|it| it.precision == F64 && it.discs == grid.compared);
-        all.extend(same.map(|it| Place { precision, ..*it }).collect::<Vec<_>>());
+        all.extend(same.map(|it| SearchCase { precision, ..*it }).collect::<Vec<_>>());
     }
     let (discs, fractions) = grid.threads;
     for threads in [1, threads] {
         let lattices = crossed(&TODAY[..1], discs, fractions).into_iter();
-        all.extend(lattices.map(|it| Place { threads: Some(threads), ..it }));
+        all.extend(lattices.map(|it| SearchCase { threads: Some(threads), ..it }));
     }
     all.extend(crossed(&PAPER, grid.paper.0, &occupied(&[DENSE])));
     all.extend(crossed(&PAPER, &[MIDDLE], &occupied(grid.paper.1)));
     all.extend(crossed(&[CHAINED, ALL_PAIRS], grid.break_even.0, &occupied(grid.break_even.1)));
-    let mut once: Vec<Place> = vec![];
+    let mut once: Vec<SearchCase> = vec![];
     all.into_iter().for_each(|place| {
         if !once.contains(&place) {
             once.push(place);
@@ -166,31 +166,31 @@ fn places(grid: &Grid, threads: usize) -> Vec<Place> {
 }
 
 /// Measured rates of a grid.
-struct Measurements<'g> {
-    grid: &'g Grid,
-    all: Vec<(Place, Measured)>,
+struct SearchRates<'g> {
+    grid: &'g SearchGrid,
+    all: Vec<(SearchCase, MeasuredCase)>,
 }
 
 /// Measures every case of the grid.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
-    let grid = if size == Size::Quick { &QUICK } else { &FULL };
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let grid = if size == StudySize::Quick { &QUICK } else { &FULL };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let places = places(grid, threads);
-    let cases: Vec<Case> = places.iter().map(|it| it.case(grid.seconds)).collect();
+    let cases: Vec<RateCase> = places.iter().map(|it| it.case(grid.seconds)).collect();
     let measured = rates(lab, &cases)?;
-    let data = Measurements { grid, all: places.into_iter().zip(measured).collect() };
+    let data = SearchRates { grid, all: places.into_iter().zip(measured).collect() };
     let single = data.all.iter().filter(|(place, _)| place.threads.is_none()).map(|(_, it)| it.clone());
     let title = "Million particle-steps a second of processor time, one thread";
     let all = rates::frame(&single.collect::<Vec<_>>(), ("rates", title), ("rate (M/s)", 1e-6, 2));
     let [break_even, summary] = data.break_even();
     let frames =
         [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(threads), summary];
-    let made = Made::of(frames).with_seeds([1]);
-    Ok(Made { processes: Some(rates::PROCESSES), ..made })
+    let made = FinishedItem::of(frames).with_seeds([1]);
+    Ok(FinishedItem { processes: Some(rates::PROCESSES), ..made })
 }
 
-impl Measurements<'_> {
-    fn at(&self, place: Place) -> Option<&Measured> {
+impl SearchRates<'_> {
+    fn at(&self, place: SearchCase) -> Option<&MeasuredCase> {
         self.all.iter().find(|(known, _)| *known == place).map(|(_, measured)| measured)
     }
 
@@ -201,21 +201,21 @@ impl Measurements<'_> {
     }
 
     /// Searches of today for a number of discs and a packing fraction, the fastest first.
-    fn ranked(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &Measured)> {
-        let each = |search| Some((search, self.at(Place::of(search, discs, packing_fraction))?));
+    fn ranked(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &MeasuredCase)> {
+        let each = |search| Some((search, self.at(SearchCase::of(search, discs, packing_fraction))?));
         let mut all: Vec<_> = TODAY.into_iter().filter_map(each).collect();
         all.sort_by(|a, b| b.1.rate().median.total_cmp(&a.1.rate().median));
         all
     }
 
     /// Time with each search over that with the fastest.
-    fn lost(&self) -> Frame {
+    fn lost(&self) -> ResultFrame {
         let rows = TODAY.into_iter().flat_map(|search| self.grid().map(move |place| (search, place)));
         let rows = rows.filter_map(|(search, (discs, phi))| {
-            let own = self.at(Place::of(search, discs, phi))?;
+            let own = self.at(SearchCase::of(search, discs, phi))?;
             Some((search, discs, phi, self.ranked(discs, phi)[0].1.over(own)))
         });
-        Rows::of(rows)
+        FrameBuilder::of(rows)
             .text("search", |row| row.0)
             .count("discs", |row| row.1)
             .number("packing fraction", 2, |row| row.2)
@@ -224,17 +224,17 @@ impl Measurements<'_> {
     }
 
     /// Fastest search, and the choice of `auto`.
-    fn fastest(&self) -> Result<Frame, StudyError> {
+    fn fastest(&self) -> Result<ResultFrame, StudyError> {
         let mut rows = vec![];
         for (discs, phi) in self.grid() {
             let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, phi);
-            let auto = Document::load("bench", &fast(scene).texts())?.check()?.scene.search.by.word();
+            let auto = GranularDocument::load("bench", &fast(scene).texts())?.check()?.scene.search.by.word();
             let ranked = self.ranked(discs, phi);
             let Some((first, best)) = ranked.first() else { continue };
             let own = ranked.iter().find(|(name, _)| *name == auto);
             rows.push((discs, phi, *first, best.rate(), auto, own.map(|(_, own)| best.over(own))));
         }
-        Ok(Rows::of(rows)
+        Ok(FrameBuilder::of(rows)
             .count("discs", |row| row.0)
             .number("packing fraction", 2, |row| row.1)
             .text("fastest", |row| row.2)
@@ -245,12 +245,12 @@ impl Measurements<'_> {
     }
 
     /// Packing fractions above which the lattice is faster than the best other search.
-    fn crossings(&self) -> Frame {
+    fn crossings(&self) -> ResultFrame {
         let of_f64 = self.grid.discs.iter().map(|&discs| (F64, discs));
         let others = PRECISIONS[1..].iter().map(|&precision| (precision, self.grid.compared));
         let rows = of_f64.chain(others).filter_map(|(precision, discs)| {
             let ratios = self.grid.packing_fractions.iter().filter_map(|&phi| {
-                let own = |search| self.at(Place { precision, ..Place::of(search, discs, phi) });
+                let own = |search| self.at(SearchCase { precision, ..SearchCase::of(search, discs, phi) });
                 let rivals = TODAY[1..].iter().filter_map(|&search| own(search));
                 let best = rivals.max_by(|a, b| a.rate().median.total_cmp(&b.rate().median))?;
                 Some((phi, own(TODAY[0])?.over(best).median))
@@ -259,7 +259,7 @@ impl Measurements<'_> {
             let densest = ratios.first()?.1;
             Some((precision, discs, crossing(&ratios), densest))
         });
-        Rows::of(rows.collect::<Vec<_>>())
+        FrameBuilder::of(rows.collect::<Vec<_>>())
             .text("precision", |row| row.0)
             .count("discs", |row| row.1)
             .number("packing fraction", 3, |row| row.2)
@@ -268,11 +268,11 @@ impl Measurements<'_> {
     }
 
     /// Numbers of discs above which the lattice's programs are faster than lists of all pairs, and their power of ρ.
-    fn break_even(&self) -> [Frame; 2] {
+    fn break_even(&self) -> [ResultFrame; 2] {
         let (discs, occupancies) = self.grid.break_even;
         let rows = occupancies.iter().map(|rho| {
             let ratios = discs.iter().rev().filter_map(|&discs| {
-                let own = |search| self.at(Place::of(search, discs, PI * rho));
+                let own = |search| self.at(SearchCase::of(search, discs, PI * rho));
                 Some((discs as f64, own(CHAINED)?.over(own(ALL_PAIRS)?).median))
             });
             (*rho, crossing(&ratios.collect::<Vec<_>>()))
@@ -280,8 +280,9 @@ impl Measurements<'_> {
         let rows: Vec<(f64, Option<f64>)> = rows.collect();
         let power = power(rows.iter().copied());
         let title = "Discs from which on the lattice's programs are faster than lists of all pairs";
-        let table = Rows::of(rows).number("occupancy ρ", 2, |row| row.0).number("discs", 0, |row| row.1);
-        let summary = Rows::of([()]).number("power of ρ", 2, |()| power);
+        let table =
+            FrameBuilder::of(rows).number("occupancy ρ", 2, |row| row.0).number("discs", 0, |row| row.1);
+        let summary = FrameBuilder::of([()]).number("power of ρ", 2, |()| power);
         [
             table.frame("break_even", title),
             summary.frame("summary", "Change of the break-even with the density"),
@@ -289,13 +290,13 @@ impl Measurements<'_> {
     }
 
     /// Speed-up by threads.
-    fn threads(&self, threads: usize) -> Frame {
+    fn threads(&self, threads: usize) -> ResultFrame {
         let single = self.all.iter().filter(|(place, _)| place.threads == Some(1) && threads > 1);
         let rows = single.filter_map(|(place, alone)| {
-            Some((place, alone, self.at(Place { threads: Some(threads), ..*place })?))
+            Some((place, alone, self.at(SearchCase { threads: Some(threads), ..*place })?))
         });
         let title = "The lattice on one thread and on all, million particle-steps a second of wall time";
-        Rows::of(rows)
+        FrameBuilder::of(rows)
             .count("discs", |(place, ..)| place.discs)
             .number("packing fraction", 2, |(place, ..)| place.packing_fraction)
             .cell("one thread (M/s)", |(_, alone, _)| alone.rate().cell(1e-6, 1))
@@ -309,7 +310,7 @@ impl Measurements<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Value;
+    use crate::frame::FrameValue;
     use crate::laboratory::running::prepared;
 
     /// Every case of both sizes is a valid scene, and no case occurs twice.
@@ -327,15 +328,17 @@ mod tests {
     /// Rates computed from known costs give the break-even of these costs, 1/ρ.
     #[test]
     fn the_break_even_follows_from_the_rates() {
-        let reading = |seconds: f64| rates::Reading { work: 1.0, seconds, ..rates::Reading::default() };
-        let measured = |place: Place| {
+        let reading =
+            |seconds: f64| rates::CaseReading { work: 1.0, seconds, ..rates::CaseReading::default() };
+        let measured = |place: SearchCase| {
             let rho = place.packing_fraction / PI;
             let seconds = if place.search == CHAINED { 50.0 / rho } else { 0.1 * place.discs as f64 };
-            (place, Measured::of([reading(seconds)]))
+            (place, MeasuredCase::of([reading(seconds)]))
         };
-        let data = Measurements { grid: &FULL, all: places(&FULL, 2).into_iter().map(measured).collect() };
+        let data = SearchRates { grid: &FULL, all: places(&FULL, 2).into_iter().map(measured).collect() };
         let [table, summary] = data.break_even();
-        let number = |value: &Value| if let Value::Number(number) = value { *number } else { f64::NAN };
+        let number =
+            |value: &FrameValue| if let FrameValue::Number(number) = value { *number } else { f64::NAN };
         for row in &table.rows {
             assert!((number(&row[0]) * number(&row[1]) / 500.0 - 1.0).abs() < 1e-9, "{row:?}");
         }

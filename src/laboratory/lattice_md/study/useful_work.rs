@@ -1,17 +1,17 @@
 //! Share of the counted operations that act on real contacts, by method and density.
 
 use super::StudyError;
-use super::density_cost::{CEILING, ListFigures, OCCUPANCIES, list_figures};
-use super::efficiency_table::{Question, model_of, step};
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::results::{Lab, Made, Size, side_by_side};
+use super::density_cost::{CEILING, ListStatistics, OCCUPANCIES, list_figures};
+use super::efficiency_table::{TableScene, model_of, step};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize, side_by_side};
 use stripmine_kernels::isa::OpClass;
-use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
 
 /// Counts operations; the contacts are those of a warm gas.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();
     let rows = side_by_side(&reachable, |&occupancy| -> Result<_, StudyError> {
@@ -19,19 +19,19 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         Ok((figures, shares(figures)?))
     })?;
     let shares = ["lattice, forces", "lattice, step", "lists, forces", "lists, step"];
-    let frame = Rows::of(rows)
+    let frame = FrameBuilder::of(rows)
         .number("ρ", 3, |(figures, _)| figures.occupancy)
         .number("contacts a disc, each from both sides", 3, |(figures, _)| figures.contacts)
         .number("candidates a disc", 2, |(figures, _)| figures.candidates)
-        .cells(shares, |(_, shares)| shares.map(|share| Cell::Number(100.0 * share, 3)))
+        .cells(shares, |(_, shares)| shares.map(|share| TableCell::Number(100.0 * share, 3)))
         .frame("useful_work", "Share of the operations that act on real contacts (%)");
-    Ok(Made::of([frame]).with_seeds([1]))
+    Ok(FinishedItem::of([frame]).with_seeds([1]))
 }
 
 /// Share of operations on contacts: lattice forces, lattice step, list forces, list step. Every execution of the lattice visits every
 /// offset of every cell. Building the lists is not counted.
-fn shares(figures: ListFigures) -> Result<[f64; 4], StudyError> {
-    let question = Question { occupancy: figures.occupancy, ..Question::default() };
+fn shares(figures: ListStatistics) -> Result<[f64; 4], StudyError> {
+    let question = TableScene { occupancy: figures.occupancy, ..TableScene::default() };
     let (programs, lengths) = step(&question)?;
     let discs = question.particles as f64;
     let contacts = figures.contacts * discs;
@@ -49,12 +49,16 @@ fn shares(figures: ListFigures) -> Result<[f64; 4], StudyError> {
     let sum = |ledger: &Ledger, forces_only: bool| -> f64 {
         let parts = ledger.parts().into_iter();
         let parts = parts.filter(|(part, ..)| !forces_only || *part == Part::Forces.name());
-        let n = |length: Length| figures.length(length, discs).unwrap_or(lengths.range(length).len() as f64);
+        let n = |length: VectorLength| {
+            figures.length(length, discs).unwrap_or(lengths.range(length).len() as f64)
+        };
         parts.map(|(_, length, counts)| n(length) * counts.total() as f64).sum()
     };
     let lists = rival_ledger(&model_of(&question)?);
-    let pairs =
-        lists.entries().iter().filter(|entry| matches!(entry.length, Length::Candidates | Length::Pairs));
+    let pairs = lists
+        .entries()
+        .iter()
+        .filter(|entry| matches!(entry.length, VectorLength::Candidates | VectorLength::Pairs));
     let of_pair: u64 = pairs.map(|entry| entry.counts.total()).sum();
     let useful_pairs = contacts * of_pair as f64;
     let of = |useful: f64, ledger: &Ledger, forces_only: bool| useful / sum(ledger, forces_only);
@@ -72,7 +76,7 @@ mod tests {
 
     #[test]
     fn the_lattice_visits_mostly_empty_cells() {
-        let figures = ListFigures { occupancy: 0.25, candidates: 6.0, contacts: 4.0, steps_a_list: 10.0 };
+        let figures = ListStatistics { occupancy: 0.25, candidates: 6.0, contacts: 4.0, steps_a_list: 10.0 };
         let [lattice_forces, _, list_forces, list_step] = shares(figures).unwrap();
         // Four of 24 offsets at a quarter of the cells, minus the work done once per cell and in the halo.
         let most = 4.0 * 0.25 / 24.0;
@@ -82,7 +86,7 @@ mod tests {
 
     #[test]
     fn without_contacts_nothing_is_useful() {
-        let figures = ListFigures { occupancy: 0.05, candidates: 1.0, contacts: 0.0, steps_a_list: 10.0 };
+        let figures = ListStatistics { occupancy: 0.05, candidates: 1.0, contacts: 0.0, steps_a_list: 10.0 };
         let [_, lattice_step, _, list_step] = shares(figures).unwrap();
         assert_eq!([lattice_step, list_step], [0.0, 0.0]);
     }

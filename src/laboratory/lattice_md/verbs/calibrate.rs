@@ -1,6 +1,6 @@
 //! `stripmine calibrate`: times of this host's operations.
 
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress, say, warn};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress, say, warn};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
 use clap::Args;
 use std::io;
@@ -26,7 +26,7 @@ pub(super) struct CalibrateVerb {
 pub(super) const SECONDS: u16 = 75;
 
 impl CalibrateVerb {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
         may_put(&self.out, self.force, "--force writes over it, --out elsewhere")?;
         // An unwritable location is found before minutes of measuring.
         try_beside(&self.out).map_err(self.failed())?;
@@ -56,7 +56,7 @@ impl CalibrateVerb {
         ))
     }
 
-    fn failed(&self) -> impl FnOnce(io::Error) -> Failure {
-        Failure::writing(self.out.display().to_string())
+    fn failed(&self) -> impl FnOnce(io::Error) -> CommandFailure {
+        CommandFailure::writing(self.out.display().to_string())
     }
 }

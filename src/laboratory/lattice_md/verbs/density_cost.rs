@@ -1,11 +1,11 @@
 //! `stripmine chart density-cost`: cost against density, as data and charts.
 
-use crate::console::{Common, Failure, clear_progress, print, print_json, progress};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress};
 use crate::laboratory::lattice_md::study::density_cost::density_cost;
 use crate::laboratory::lattice_md::study::searches;
 use crate::laboratory::written;
 use crate::model::machines;
-use crate::results::{Folder, Lab, Size};
+use crate::results::{Folder, StudyEnvironment, StudySize};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -21,7 +21,7 @@ pub(super) struct DensityCostVerb {
 }
 
 impl DensityCostVerb {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
         let machine = machines::find(&self.machine)?;
         // Checked before the long computation.
         let folder = Folder::open(&self.out, &["cost", "searches"], false)?;
@@ -30,7 +30,7 @@ impl DensityCostVerb {
         let cost = density_cost(&machine)?;
         let said = written(&folder, ("cost", &cost), start, common)?;
         let (start, show) = (Instant::now(), |share: f64| bar.set_position((1e3 * share) as u64));
-        let searches = searches::made(&Lab::apart(&show), Size::Quick)?;
+        let searches = searches::made(&StudyEnvironment::apart(&show), StudySize::Quick)?;
         let also_said = written(&folder, ("searches", &searches), start, common)?;
         clear_progress();
         match common.json {

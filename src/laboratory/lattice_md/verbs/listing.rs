@@ -1,9 +1,9 @@
 //! `stripmine listing`: vector instructions of a part of the step.
 
-use crate::console::{Common, Failure, print, print_json};
-use crate::laboratory::lattice_md::study::efficiency_table::Question;
+use crate::console::{CommandFailure, Common, print, print_json};
+use crate::laboratory::lattice_md::study::efficiency_table::TableScene;
 use crate::laboratory::lattice_md::study::listing::listing;
-use crate::results::Made;
+use crate::results::FinishedItem;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stripmine_physics::method::lattice_md::Part;
@@ -14,7 +14,7 @@ pub(super) struct ListingVerb {
     #[arg(value_parser = part_parser())]
     part: Part,
     #[command(flatten)]
-    scene: Question,
+    scene: TableScene,
 }
 
 /// Parser of the existing parts; clap lists them for any other name.
@@ -27,8 +27,8 @@ fn part_parser() -> impl TypedValueParser<Value = Part> {
 }
 
 impl ListingVerb {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
         let (instructions, text) = listing(self.part, &self.scene)?;
-        if common.json { print_json(&Made::of([instructions]).json()) } else { print(&text) }
+        if common.json { print_json(&FinishedItem::of([instructions]).json()) } else { print(&text) }
     }
 }

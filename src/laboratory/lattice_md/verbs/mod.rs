@@ -6,16 +6,16 @@ mod listing;
 mod table;
 mod validate_model;
 
-use crate::console::{Common, Failure, Verb, print, print_json};
-use crate::frame::Table;
+use crate::console::{CommandFailure, Common, Verb, print, print_json};
+use crate::frame::FormattedTable;
 use crate::report::terminal;
-use crate::results::Made;
+use crate::results::FinishedItem;
 use calibrate::CalibrateVerb;
 use clap::{Args, FromArgMatches};
 use density_cost::DensityCostVerb;
 use listing::ListingVerb;
 use table::TableVerb;
-use validate_model::ValidateModel;
+use validate_model::ValidateModelVerb;
 
 macro_rules! verbs {
     ($($name:literal $arguments:ident,)*) => {
@@ -32,7 +32,7 @@ pub(super) const VERBS: &[Verb] = verbs! {
     "table" TableVerb,
     "listing" ListingVerb,
     "calibrate" CalibrateVerb,
-    "validate-model" ValidateModel,
+    "validate-model" ValidateModelVerb,
 };
 
 /// Every study below `chart`, in the order of the help.
@@ -43,13 +43,13 @@ pub(super) const CHARTS: &[Verb] = verbs! {
 fn carried_out<A: Args + FromArgMatches>(
     matches: &clap::ArgMatches,
     common: &Common,
-    run: fn(&A, &Common) -> Result<(), Failure>,
-) -> Result<(), Failure> {
-    run(&A::from_arg_matches(matches).map_err(Failure::Arguments)?, common)
+    run: fn(&A, &Common) -> Result<(), CommandFailure>,
+) -> Result<(), CommandFailure> {
+    run(&A::from_arg_matches(matches).map_err(CommandFailure::Arguments)?, common)
 }
 
 /// Prints a result: every frame as a table, or all of them as JSON.
-fn print_made(made: &Made, common: &Common) -> Result<(), Failure> {
-    let tables = made.frames.iter().map(|frame| terminal::render(&Table::from(frame)));
+fn print_made(made: &FinishedItem, common: &Common) -> Result<(), CommandFailure> {
+    let tables = made.frames.iter().map(|frame| terminal::render(&FormattedTable::from(frame)));
     if common.json { print_json(&made.json()) } else { print(&tables.collect::<Vec<_>>().join("\n")) }
 }

@@ -1,8 +1,8 @@
 //! `stripmine table`: efficiency table, and ladder of clock models.
 
 use super::print_made;
-use crate::console::{Common, Failure};
-use crate::laboratory::lattice_md::study::efficiency_table::{Question, efficiency_table};
+use crate::console::{CommandFailure, Common};
+use crate::laboratory::lattice_md::study::efficiency_table::{TableScene, efficiency_table};
 use crate::laboratory::lattice_md::study::ladder::ladder;
 use crate::model::machines;
 use clap::Args;
@@ -11,7 +11,7 @@ use clap::Args;
 #[derive(Args)]
 pub(super) struct TableVerb {
     #[command(flatten)]
-    scene: Question,
+    scene: TableScene,
     #[arg(long, default_value = "paper", help = machine_help())]
     machine: String,
     /// Prints the clock periods of a step by every clock model instead, from the trivial one to chaining and memory ports
@@ -26,7 +26,7 @@ pub(super) fn machine_help() -> String {
 }
 
 impl TableVerb {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
+    pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
         let (question, machine) = (self.scene, machines::find(&self.machine)?);
         let made = match self.ladder {
             true => ladder(&question, &machine)?,

@@ -2,11 +2,13 @@
 
 use super::calibrate::SECONDS;
 use super::print_made;
-use crate::console::{Common, Failure, clear_progress, progress, say, warn};
+use crate::console::{CommandFailure, Common, clear_progress, progress, say, warn};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
-use crate::laboratory::lattice_md::study::model_validation::{Effort, calibrated_now, model_validation};
+use crate::laboratory::lattice_md::study::model_validation::{
+    ValidationSize, calibrated_now, model_validation,
+};
 use crate::laboratory::written;
-use crate::model::host::{HostModel, Measured, default_model};
+use crate::model::host::{HostModel, MeasurementConditions, default_model};
 use crate::results::Folder;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
@@ -19,7 +21,7 @@ use stripmine_physics::origin;
 
 /// Predicts runs that the model was not fitted to, measures them as users run them, and reports the error of each prediction
 #[derive(Args)]
-pub(super) struct ValidateModel {
+pub(super) struct ValidateModelVerb {
     /// Host file of `calibrate` (default: the model shipped with the program)
     #[arg(long)]
     host: Option<PathBuf>,
@@ -59,7 +61,7 @@ const ROUNDS: usize = 12;
 const CALIBRATION: f64 = 0.4;
 
 /// Model of a host file, or the model shipped with the program; and a description of its origin.
-fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String), Failure> {
+fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String), CommandFailure> {
     let note = |warns: bool, words: fmt::Arguments<'_>| match common.quiet {
         true => (),
         false if warns => warn(words),
@@ -78,7 +80,7 @@ fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String
         return Ok((model, whose));
     };
     let (model, name) = (HostModel::load(file)?, file.display());
-    let Measured { state, .. } = &model.measured;
+    let MeasurementConditions { state, .. } = &model.measured;
     if !model.measured.was_quiet() {
         note(true, format_args!("the machine of {name} was {state} when it was calibrated"));
     }
@@ -92,9 +94,9 @@ fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String
     Ok((model, whose))
 }
 
-impl ValidateModel {
-    pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let effort = Effort {
+impl ValidateModelVerb {
+    pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
+        let effort = ValidationSize {
             particles: self.particles.clone(),
             occupancies: self.occupancies.clone(),
             rounds: ROUNDS,
@@ -115,8 +117,9 @@ impl ValidateModel {
         let mut made = model_validation(&model, whose, &effort, |share| show(begun + (1.0 - begun) * share))?;
         clear_progress();
         if self.calibrate {
-            let text =
-                model.to_toml().map_err(|cause| Failure::writing("host.toml")(io::Error::other(cause)))?;
+            let text = model
+                .to_toml()
+                .map_err(|cause| CommandFailure::writing("host.toml")(io::Error::other(cause)))?;
             made.files.push(("host.toml".to_owned(), text));
         }
         if let Some(folder) = folder {

@@ -1,12 +1,12 @@
 //! Collapse of a cold sphere of bodies.
 
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::laboratory::running::Running;
-use crate::report::figure::{Drawing, Guide, Picture, Shape, Tint};
-use crate::report::section::{Film, Frame};
-use crate::results::{Lab, Made, Meter, Size};
-use crate::statistics::{Mean, quantile};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::laboratory::running::RunningScene;
+use crate::report::figure::{Drawing, DrawnShape, Guide, Picture, Tint};
+use crate::report::section::{Film, FilmFrame};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
+use crate::statistics::{MeanWithBar, quantile};
 use crate::study::StudyError;
 use std::f64::consts::{PI, SQRT_2};
 use stripmine_physics::method::nbody::keys::{COUNT, SEED};
@@ -50,7 +50,7 @@ struct Moment {
 }
 
 /// Bound bodies at a moment.
-struct Bound {
+struct BoundBodies {
     time: f64,
     share: f64,
     /// Kinetic over potential energy, relative to the mean motion of the bound bodies.
@@ -61,7 +61,7 @@ struct Bound {
 
 struct Sphere {
     seed: u64,
-    bound: Vec<Bound>,
+    bound: Vec<BoundBodies>,
     moments: Vec<Moment>,
 }
 
@@ -73,25 +73,25 @@ impl Sphere {
     }
 
     /// Mean over the late moments.
-    fn late(&self, of: fn(&Bound) -> f64) -> f64 {
+    fn late(&self, of: fn(&BoundBodies) -> f64) -> f64 {
         self.bound.iter().map(of).sum::<f64>() / self.bound.len() as f64
     }
 }
 
 /// Simulates a sphere for each seed.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let all = Meter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let all = ProgressMeter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
     let mean = |of: &dyn Fn(&Sphere) -> f64, decimals: usize| {
-        let Mean { value, bar } = Mean::of(&all.iter().map(of).collect::<Vec<_>>());
-        Cell::with_error(value, Some(bar), decimals)
+        let MeanWithBar { value, bar } = MeanWithBar::of(&all.iter().map(of).collect::<Vec<_>>());
+        TableCell::with_error(value, Some(bar), decimals)
     };
     let largest = |of: fn(&Moment) -> f64| all.iter().flat_map(|it| &it.moments).map(of).fold(0.0, f64::max);
     let over_seeds = |at: usize, of: fn(&Moment) -> f64| {
         all.iter().map(|it| of(&it.moments[at])).sum::<f64>() / all.len() as f64
     };
     let bound = all.iter().flat_map(|sphere| sphere.bound.iter().map(|it| (sphere.seed, it)));
-    let made = Made::of([
-        Rows::of(&all)
+    let made = FinishedItem::of([
+        FrameBuilder::of(&all)
             .count("seed", |it| it.seed)
             .number("end of the fall", 3, |it| it.closest()[0])
             .number("radius of half the mass there", 4, |it| it.closest()[1])
@@ -102,7 +102,7 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
                 "spheres",
                 format!("Spheres of {BODIES} bodies; late means are over times from {LATE} on"),
             ),
-        Rows::of(0..all[0].moments.len())
+        FrameBuilder::of(0..all[0].moments.len())
             .number("time", 2, |at| all[0].moments[*at].time)
             .number("virial ratio", 3, |at| over_seeds(*at, |it| it.virial_ratio))
             .number("radius of half the mass", 3, |at| over_seeds(*at, |it| it.half_mass_radius))
@@ -110,14 +110,14 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
                 "moments",
                 "All bodies: kinetic over potential energy, and radius of half the mass, means over seeds",
             ),
-        Rows::of(bound)
+        FrameBuilder::of(bound)
             .count("seed", |(seed, _)| *seed)
             .number("time", 2, |(_, it)| it.time)
             .number("stays bound (%)", 1, |(_, it)| 100.0 * it.share)
             .number("virial ratio, Σ r·F", 3, |(_, it)| it.clausius_ratio)
             .number("with the potential energy", 3, |(_, it)| it.virial_ratio)
             .frame("bound", "Bodies that stay bound, at late moments"),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .cell("end of the fall", |()| mean(&|it| it.closest()[0], 3))
             .number("free fall", 3, |()| FREE_FALL)
             .cell("radius of half the mass there", |()| mean(&|it| it.closest()[1], 4))
@@ -142,7 +142,7 @@ fn drawing(moments: &[Moment], time: f64) -> Drawing {
     far.sort_by(f64::total_cmp);
     let half = 1.05 * quantile(&far, SEEN).unwrap_or(WINDOW);
     let inside = bodies.iter().filter(|(centre, _)| centre.iter().all(|x| x.abs() < half));
-    let shapes = inside.map(|&(centre, speed)| Shape::Disc {
+    let shapes = inside.map(|&(centre, speed)| DrawnShape::Disc {
         centre,
         radius: RADIUS * half / WINDOW,
         tint: Tint::Shade((speed / FASTEST).min(1.0)),
@@ -158,7 +158,7 @@ fn drawing(moments: &[Moment], time: f64) -> Drawing {
 
 /// Film of every other moment; bodies beyond the window are drawn at its rim.
 fn film(sphere: &Sphere) -> Film {
-    let frames = sphere.moments.iter().filter(|it| it.time <= FILM_END).step_by(2).map(|it| Frame {
+    let frames = sphere.moments.iter().filter(|it| it.time <= FILM_END).step_by(2).map(|it| FilmFrame {
         time: it.time,
         discs: it
             .bodies
@@ -183,7 +183,7 @@ fn film(sphere: &Sphere) -> Film {
 
 fn sphere(seed: u64) -> Result<Sphere, StudyError> {
     let mut running =
-        Running::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES).set(&SEED, seed))?;
+        RunningScene::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES).set(&SEED, seed))?;
     let (mut moments, mut late) = (vec![], vec![]);
     for sample in 0..=SAMPLES {
         if sample > 0 {
@@ -206,7 +206,7 @@ fn sphere(seed: u64) -> Result<Sphere, StudyError> {
 }
 
 /// Bound bodies: those with positive energy are removed repeatedly until none is left.
-fn bound(time: f64, particles: &Particles) -> Bound {
+fn bound(time: f64, particles: &Particles) -> BoundBodies {
     // Value of the preset.
     const SOFTENING: f64 = 0.03;
     let mut inside: Vec<&Particle> = particles.all().iter().collect();
@@ -234,7 +234,7 @@ fn bound(time: f64, particles: &Particles) -> Bound {
             };
             let [virial_ratio, clausius_ratio] = [1, 2].map(|which| sum(0) / (0.5 * sum(which)).abs());
             let share = before as f64 / particles.len() as f64;
-            return Bound { time, share, virial_ratio, clausius_ratio };
+            return BoundBodies { time, share, virial_ratio, clausius_ratio };
         }
         let stays = energies.iter().map(|[kinetic, potential, _]| kinetic + potential < 0.0);
         inside = inside.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(body, _)| body).collect();

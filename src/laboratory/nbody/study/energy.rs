@@ -1,9 +1,9 @@
 //! Energy error of integrators on a Kepler orbit: against step and cost, and the step at which the orbit is lost.
 
-use crate::console::Failure;
-use crate::frame::{Cell, Frame, Rows};
-use crate::laboratory::running::{Running, bisected};
-use crate::results::{Lab, Made, Meter, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::laboratory::running::{RunningScene, bisected};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use stripmine_physics::method::nbody::keys::{DAMPING, ECCENTRICITY, INTEGRATOR};
 use stripmine_physics::method::nbody::schemes::SchemeName;
@@ -54,7 +54,7 @@ fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
 }
 
 /// Measures every scheme.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =
@@ -66,13 +66,13 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         .filter(|scheme| !matches!(scheme, SchemeName::Euler | SchemeName::EulerWithHalf));
     let eccentric: Vec<(SchemeName, f64)> =
         kept.flat_map(|&scheme| ECCENTRICITIES.map(|eccentricity| (scheme, eccentricity))).collect();
-    let meter = Meter::new((orbits.len() + eccentric.len()) as f64, progress);
+    let meter = ProgressMeter::new((orbits.len() + eccentric.len()) as f64, progress);
     let orbits = meter.each_from_last(&orbits, |&(scheme, steps)| orbit(scheme, steps))?;
     let edges = meter.each(&eccentric, |&(scheme, eccentricity)| edge(scheme, eccentricity))?;
     let damped = STEPS.into_iter().map(|steps| damped_orbit(steps, 0.9999)).collect::<Result<Vec<_>, _>>()?;
-    Ok(Made::of([
+    Ok(FinishedItem::of([
         errors(&orbits, schemes.iter().rev().copied()),
-        Rows::of(&orbits)
+        FrameBuilder::of(&orbits)
             .text("scheme", |it| it.scheme.word())
             .count("steps of an orbit", |it| it.steps)
             .number("evaluations of the forces an orbit", 2, |it| it.evaluations)
@@ -81,18 +81,18 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
             .short("largest momentum", |it| it.drift[0])
             .short("largest change of the angular momentum", |it| it.drift[1])
             .frame("orbits", "Energy error and drift of momenta along 100 orbits"),
-        Rows::of(eccentric.iter().zip(edges))
+        FrameBuilder::of(eccentric.iter().zip(edges))
             .text("scheme", |((scheme, _), _)| scheme.word())
             .number("eccentricity", 1, |((_, eccentricity), _)| *eccentricity)
             .cell("steps of an orbit", |(_, steps)| *steps)
             .frame("edges", "Fewest steps that keep an orbit for 100 turns"),
-        Rows::of(&damped)
+        FrameBuilder::of(&damped)
             .count("steps of an orbit", |(steps, ..)| *steps)
             .number("friction −ln(damping)/dt", 4, |(steps, damping, _)| {
                 -damping.ln() * *steps as f64 / ORBIT
             })
             .cell("energy over that of the start", |(.., energy)| {
-                energy.map_or(Cell::from("lost"), |energy| Cell::Number(energy, 3))
+                energy.map_or(TableCell::from("lost"), |energy| TableCell::Number(energy, 3))
             })
             .frame("damped", "The source's scheme with a damping of 0.9999, after ten orbits"),
     ]))
@@ -106,7 +106,7 @@ fn known(scheme: SchemeName, steps: u64) -> Option<f64> {
 }
 
 /// Errors by scheme and steps, with the order from the two shortest steps whose errors are not rounding.
-fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Frame {
+fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> ResultFrame {
     let of = |scheme: SchemeName, steps: u64| {
         orbits.iter().find(|it| it.scheme == scheme && it.steps == steps).and_then(|it| it.error)
     };
@@ -114,20 +114,20 @@ fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Frame 
         let errors = STEPS.iter().filter_map(|&steps| of(scheme, steps));
         let errors: Vec<f64> = errors.filter(|error| (ROUNDING..0.5).contains(error)).collect();
         match errors.as_slice() {
-            [.., a, b] => Cell::Number((a / b).log2() / 2.0, 2),
-            _ => Cell::Nothing,
+            [.., a, b] => TableCell::Number((a / b).log2() / 2.0, 2),
+            _ => TableCell::Nothing,
         }
     };
-    let mut rows = Rows::of(schemes).text("scheme", |scheme| scheme.word());
+    let mut rows = FrameBuilder::of(schemes).text("scheme", |scheme| scheme.word());
     for steps in STEPS {
         rows = rows
             .cell(format!("{steps} steps"), |&scheme| {
-                of(scheme, steps).map_or(Cell::from("lost"), Cell::Short)
+                of(scheme, steps).map_or(TableCell::from("lost"), TableCell::Short)
             })
             .cell("known", |&scheme| match known(scheme, steps) {
-                Some(known) if known.is_finite() => Cell::Short(known),
-                Some(_) => Cell::from("rounding"),
-                None => Cell::Nothing,
+                Some(known) if known.is_finite() => TableCell::Short(known),
+                Some(_) => TableCell::from("rounding"),
+                None => TableCell::Nothing,
             });
     }
     rows.cell("order", |&scheme| order(scheme)).frame(
@@ -137,13 +137,13 @@ fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Frame 
 }
 
 /// Present total energy. Published errors are relative to it, since the energy of an orbit is far from zero.
-fn energy(running: &Running) -> Result<f64, StudyError> {
+fn energy(running: &RunningScene) -> Result<f64, StudyError> {
     let [kinetic, potential] = running.observed(["kinetic", "potential"])?;
     Ok(kinetic + potential)
 }
 
 fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
-    let mut running = Running::timed("kepler", &overrides(scheme, steps, 0.5))?;
+    let mut running = RunningScene::timed("kepler", &overrides(scheme, steps, 0.5))?;
     let names = ["momentum", "angular_momentum_z"];
     let (turning, start) = (running.observed(names)?[1], energy(&running)?);
     let (mut largest, mut drift, before) = (0.0f64, [0.0f64; 2], running.simulation.work());
@@ -166,7 +166,7 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
 
 /// Returns true if an orbit is kept.
 fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, StudyError> {
-    let mut running = Running::timed("kepler", &overrides(scheme, steps, eccentricity))?;
+    let mut running = RunningScene::timed("kepler", &overrides(scheme, steps, eccentricity))?;
     let start = energy(&running)?;
     for _ in 0..ORBITS {
         if running.steps(steps).is_err() {
@@ -197,7 +197,7 @@ fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Option<u64>, StudyError
 /// Steps per orbit, damping, and the energy after ten orbits over its initial value; `None` if positions become infinite.
 fn damped_orbit(steps: u64, damping: f64) -> Result<(u64, f64, Option<f64>), StudyError> {
     let overrides = overrides(SchemeName::DampedEuler, steps, 0.5).set(&DAMPING, damping);
-    let mut running = Running::timed("kepler", &overrides)?;
+    let mut running = RunningScene::timed("kepler", &overrides)?;
     let start = energy(&running)?;
     let done = running.steps(10 * steps);
     let ratio = 1.0 + (energy(&running)? / start - 1.0);

@@ -1,20 +1,20 @@
 //! Interactions per second, and force errors.
 
-use crate::console::Failure;
-use crate::frame::Rows;
-use crate::laboratory::rates::{Case, Own, Reading, given, rates};
-use crate::laboratory::running::{Running, on_threads};
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
+use crate::laboratory::rates::{CaseReading, RateCase, StudyWork, given, rates};
+use crate::laboratory::running::{RunningScene, on_threads};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method;
-use stripmine_physics::method::nbody::bodies::{Bodies, zeros};
-use stripmine_physics::method::nbody::field::{Attraction, never, potential};
+use stripmine_physics::method::nbody::bodies::{PointMasses, zeros};
+use stripmine_physics::method::nbody::field::{GravityField, never, potential};
 use stripmine_physics::method::nbody::keys::{ROOTS, SOFTENING};
 use stripmine_physics::method::nbody::options::{ArithmeticKind, StartKind};
-use stripmine_physics::method::nbody::scene::Scene;
-use stripmine_physics::method::nbody::schemes::Field;
+use stripmine_physics::method::nbody::scene::NbodyScene;
+use stripmine_physics::method::nbody::schemes::AccelerationField;
 use stripmine_physics::method::nbody::starts::bodies;
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::{DT, Overrides, PRECISION, Precision};
@@ -37,22 +37,23 @@ const SOFTENED: f64 = 0.05;
 const THREADS: [usize; 2] = [1, 2];
 
 /// Measured work other than runs of scenes: evaluations of all forces.
-pub(in crate::laboratory::nbody) static WORKS: [Own; 1] = [Own { name: "nbody-forces", measure: forces }];
+pub(in crate::laboratory::nbody) static WORKS: [StudyWork; 1] =
+    [StudyWork { name: "nbody-forces", measure: forces }];
 
 /// Measures every combination.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (counts, seconds): (&[usize], f64) =
-        if size == Size::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
+        if size == StudySize::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
     let all: Vec<(usize, usize)> =
         counts.iter().flat_map(|&count| (0..WAYS.len()).map(move |way| (count, way))).collect();
     let case = |&(count, way): &(usize, usize), threads: usize| {
         let (precision, arithmetic) = WAYS[way];
-        let case = Case::own(&WORKS[0], serde_json::json!([count, way, seconds])).on_threads(threads);
+        let case = RateCase::own(&WORKS[0], serde_json::json!([count, way, seconds])).on_threads(threads);
         case.label("bodies", count as u64)
             .label("forces", precision.word())
             .label("arithmetic", arithmetic.word())
     };
-    let cases: Vec<Case> = all.iter().flat_map(|it| THREADS.map(|threads| case(it, threads))).collect();
+    let cases: Vec<RateCase> = all.iter().flat_map(|it| THREADS.map(|threads| case(it, threads))).collect();
     let measured = rates(lab, &cases)?;
     let errors = all.iter().map(|&(count, way)| errors(count, way)).collect::<Result<Vec<_>, _>>()?;
     let rows =
@@ -64,8 +65,8 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
     let conserving = ways.into_iter().flat_map(|way| [128, 512].map(|steps| (way, steps)));
     let conserving = conserving.map(|(way, steps)| Ok((way, steps, energy_error(way, steps)?)));
     let conserving = conserving.collect::<Result<Vec<_>, StudyError>>()?;
-    Ok(Made::of([
-        Rows::of(rows)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(rows)
             .count("bodies", |(count, ..)| *count)
             .text("forces", |(_, (precision, _), ..)| precision.word())
             .text("arithmetic", |(_, (_, arithmetic), ..)| arithmetic.word())
@@ -78,7 +79,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
                 "rates",
                 "Directed interactions a second, N² counted: median and range of three processes",
             ),
-        Rows::of(conserving)
+        FrameBuilder::of(conserving)
             .text("forces", |((precision, _), ..)| precision.word())
             .text("arithmetic", |((_, arithmetic), ..)| arithmetic.word())
             .count("steps of a unit of time", |(_, steps, _)| *steps)
@@ -87,7 +88,7 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
                 "conserving",
                 "Energy error of a Plummer sphere of 1024 bodies after two units of time, leapfrog",
             ),
-        Rows::of([()])
+        FrameBuilder::of([()])
             .text("instruction set", |()| InstructionSet::best().name())
             .text("bits of two threads", |()| if same { "the same" } else { "other" })
             .frame("summary", "Instruction set, and bits of one thread and of two"),
@@ -96,22 +97,26 @@ pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
 }
 
 /// Scene of a combination, and its Plummer sphere.
-fn sphere(count: usize, way: usize) -> (Scene, Bodies) {
+fn sphere(count: usize, way: usize) -> (NbodyScene, PointMasses) {
     let (precision, arithmetic) = WAYS[way];
-    let mut scene = Scene { softening: SHARP, precision, arithmetic, ..Scene::default() };
+    let mut scene = NbodyScene { softening: SHARP, precision, arithmetic, ..NbodyScene::default() };
     (scene.start.kind, scene.start.count) = (StartKind::Plummer, count);
-    let all = Bodies::new(bodies(&scene.start, SHARP, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
+    let all = PointMasses::new(bodies(&scene.start, SHARP, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
     (scene, all)
 }
 
 /// Times evaluations of the forces. Parameters: number of bodies, index into [`WAYS`], minimum seconds.
-fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
+fn forces(parameters: &serde_json::Value) -> Result<CaseReading, StudyError> {
     let (count, way, least): (usize, usize, f64) = given(parameters)?;
     let (scene, all) = sphere(count, way);
-    let mut field = Attraction::new(&scene, &all)?;
+    let mut field = GravityField::new(&scene, &all)?;
     let mut into = zeros(all.entries());
-    let mut sweep =
-        || field.asking(false, &never).acceleration(&all.position, &mut into).map_err(method::Failure::from);
+    let mut sweep = || {
+        field
+            .asking(false, &never)
+            .acceleration(&all.position, &mut into)
+            .map_err(method::PhysicsFailure::from)
+    };
     sweep()?;
     let (begun, mut sweeps) = (Instant::now(), 0);
     while begun.elapsed().as_secs_f64() < least {
@@ -119,7 +124,7 @@ fn forces(parameters: &serde_json::Value) -> Result<Reading, StudyError> {
         sweeps += 1;
     }
     let seconds = begun.elapsed().as_secs_f64();
-    Ok(Reading { work: f64::from(sweeps) * (count as f64).powi(2), seconds, ..Reading::default() })
+    Ok(CaseReading { work: f64::from(sweeps) * (count as f64).powi(2), seconds, ..CaseReading::default() })
 }
 
 /// Largest error of an acceleration over the largest acceleration: first for masses in the kernel's precision, then including the rounding of
@@ -129,11 +134,11 @@ fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
     let on = |threads: usize| {
         on_threads(threads, || {
             let mut into = zeros(all.entries());
-            let mut field = Attraction::new(&scene, &all)?;
+            let mut field = GravityField::new(&scene, &all)?;
             field
                 .asking(false, &never)
                 .acceleration(&all.position, &mut into)
-                .map_err(method::Failure::from)?;
+                .map_err(method::PhysicsFailure::from)?;
             Ok(into)
         })
     };
@@ -155,7 +160,7 @@ fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
 
 /// Acceleration of a body by direct summation with Neumaier's compensation. If `is_rounded`, masses are first rounded to single precision as
 /// in the kernel.
-fn written_down(all: &Bodies, body: usize, softening: f64, is_rounded: bool) -> [f64; 3] {
+fn written_down(all: &PointMasses, body: usize, softening: f64, is_rounded: bool) -> [f64; 3] {
     let seen = |value: f64| if is_rounded { f64::from(value as f32) } else { value };
     let mut sums = [[0.0_f64; 2]; 3];
     for other in (0..all.len()).filter(|&other| other != body) {
@@ -181,7 +186,7 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     let position = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).collect());
     let square = |body: &Particle| body.velocity.iter().map(|v| v * v).sum::<f64>();
     let kinetic: f64 = all.iter().map(|body| 0.5 * body.mass * square(body)).sum();
-    let potential = potential(&mass, &position, softening, &never).map_err(method::Failure::from)?;
+    let potential = potential(&mass, &position, softening, &never).map_err(method::PhysicsFailure::from)?;
     Ok(kinetic + potential)
 }
 
@@ -189,7 +194,7 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
 fn energy_error((precision, arithmetic): (Precision, ArithmeticKind), steps: u64) -> Result<f64, StudyError> {
     let machine = Overrides::new().set(&PRECISION, precision).set(&ROOTS, arithmetic);
     let overrides = machine.set(&DT, 1.0 / steps as f64).set(&SOFTENING, SOFTENED);
-    let mut running = Running::timed("plummer", &overrides)?;
+    let mut running = RunningScene::timed("plummer", &overrides)?;
     let begin = energy(&running.simulation.particles(), SOFTENED)?;
     running.steps(2 * steps)?;
     Ok((energy(&running.simulation.particles(), SOFTENED)? / begin - 1.0).abs())

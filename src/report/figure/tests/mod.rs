@@ -3,7 +3,7 @@
 pub(crate) mod samples;
 
 use super::output::tree;
-use super::{Axis, Chart, Drawing, Figure, Map, Picture, Point, Scale, Style, svg};
+use super::{Chart, ChartAxis, Drawing, Figure, HeatMap, Picture, Scale, SeriesPoint, Style, svg};
 use resvg::usvg::{Group, Node};
 
 /// Every line of words with its left, upper, right and lower end.
@@ -142,7 +142,7 @@ fn very_small_values_are_drawn_correctly() {
     drawn.bands.clear();
     drawn.series.truncate(1);
     drawn.series[0].style = Style::Points;
-    drawn.series[0].points = vec![Point::at(10.0, 1e-14)];
+    drawn.series[0].points = vec![SeriesPoint::at(10.0, 1e-14)];
     drawn.x.limits = Some([1.0, 1000.0]);
     drawn.y.limits = Some([1e-16, 1e-8]);
     let [left, top, right, bottom] = plot(&figure);
@@ -158,7 +158,7 @@ fn data_beyond_the_limits_are_clipped() {
     let drawn = chart_of(&mut figure.picture);
     drawn.x.limits = Some([10.0, 1000.0]);
     drawn.y.limits = Some([1e-7, 1e-6]);
-    drawn.series.iter_mut().for_each(|series| series.points.push(Point::at(1e300, 1e-300)));
+    drawn.series.iter_mut().for_each(|series| series.points.push(SeriesPoint::at(1e300, 1e-300)));
     // Curves may leave the window that clips them; markers may not, because half a marker is misleading.
     let [left, top, right, bottom] = plot(&figure);
     let all = marked(&figure);
@@ -236,7 +236,7 @@ fn error_messages_name_the_fault() {
     assert!(of_chart(|picture| chart_of(picture).bands[0].ends = [2.0, 1.0]).contains("from 2 to 1"));
     assert!(of_chart(|picture| chart_of(picture).x.limits = Some([-1.0, 1.0])).contains("logarithmic"));
 
-    let of_map = |spoil: fn(&mut Map)| {
+    let of_map = |spoil: fn(&mut HeatMap)| {
         let mut figure = samples::map();
         if let Picture::Map(map) = &mut figure.picture {
             spoil(map);
@@ -251,12 +251,12 @@ fn error_messages_name_the_fault() {
     assert_eq!(of_map(|map| map.rows.clear()), "it has no data to draw");
     assert!(of_map(|map| map.rows[0][0] = f64::INFINITY).ends_with("is inf; expected a finite number"));
     assert!(
-        of_map(|map| map.x = Axis::names("x", ["a", "b"]))
+        of_map(|map| map.x = ChartAxis::names("x", ["a", "b"]))
             .ends_with("has 2 names; expected one for each of 120 cells")
     );
     assert!(
         of_map(|map| {
-            map.value = Axis { scale: Scale::Logarithmic, ..map.value.clone() };
+            map.value = ChartAxis { scale: Scale::Logarithmic, ..map.value.clone() };
             map.rows[0][0] = 0.0;
         })
         .contains("logarithmic")

@@ -1,7 +1,8 @@
 //! Sample figures of each kind, for tests.
 
 use super::super::{
-    Axis, Band, Chart, Drawing, Figure, Guide, Map, Picture, Point, Series, Shape, Style, Tint,
+    Chart, ChartAxis, ChartBand, Drawing, DrawnShape, Figure, Guide, HeatMap, Picture, Series, SeriesPoint,
+    Style, Tint,
 };
 
 /// All samples.
@@ -47,12 +48,12 @@ pub(crate) fn logarithmic() -> Figure {
         ]
     });
     let chart = Chart::of(
-        Axis::logarithmic("Vector length", None),
-        Axis::logarithmic("Time of a vector instruction", Some("s")),
+        ChartAxis::logarithmic("Vector length", None),
+        ChartAxis::logarithmic("Time of a vector instruction", Some("s")),
     )
     .with(all)
-    .band(Band::of_x("beyond the caches", [2e5, f64::INFINITY]))
-    .band(Band::of_y("within 15 %", [0.85, 1.15]));
+    .band(ChartBand::of_x("beyond the caches", [2e5, f64::INFINITY]))
+    .band(ChartBand::of_y("within 15 %", [0.85, 1.15]));
     figure(
         "logarithmic",
         "Time of a vector instruction by its length: models and measurements",
@@ -66,12 +67,18 @@ pub(crate) fn linear() -> Figure {
     let friction = grid(90).map(|x| (x, (6.0 * x).sin() * 20.0 + 22.0 * x));
     let rival = grid(90).map(|x| (x, 18.0 * x * x - 4.0));
     let seen = grid(14).map(|x| (x, (6.0 * x).sin() * 18.0 + 24.0 * x));
-    let chart = Chart::of(Axis::linear("Packing fraction ν", None), Axis::linear("Flow", Some("kg/s")))
-        .series("with friction", Style::Line, 0, friction)
-        .series("what a neighbour list would need", Style::Dashed, 1, rival)
-        .series("seen", Style::Joined, 2, seen)
-        .series("mean of what is seen", Style::Ribbon, 2, [(0.3, 9.0, [7.0, 11.0]), (0.9, 9.0, [7.0, 11.0])])
-        .band(Band::of_x("no configuration is denser", [0.84, 0.9]));
+    let chart =
+        Chart::of(ChartAxis::linear("Packing fraction ν", None), ChartAxis::linear("Flow", Some("kg/s")))
+            .series("with friction", Style::Line, 0, friction)
+            .series("what a neighbour list would need", Style::Dashed, 1, rival)
+            .series("seen", Style::Joined, 2, seen)
+            .series(
+                "mean of what is seen",
+                Style::Ribbon,
+                2,
+                [(0.3, 9.0, [7.0, 11.0]), (0.9, 9.0, [7.0, 11.0])],
+            )
+            .band(ChartBand::of_x("no configuration is denser", [0.84, 0.9]));
     figure("linear", "Flow through the pipe", single(chart))
 }
 
@@ -82,11 +89,12 @@ pub(crate) fn map() -> Figure {
         let wave = ((x * 14.0 - t * 9.0).sin() + 0.6 * (x * 31.0 + t * 7.0).cos()).max(-0.9);
         0.12 + 0.25 * (wave + 0.9) * (0.3 + 0.7 * t)
     };
-    let limited = |label, unit, limits| Axis { limits: Some(limits), ..Axis::linear(label, Some(unit)) };
-    let picture = Map {
+    let limited =
+        |label, unit, limits| ChartAxis { limits: Some(limits), ..ChartAxis::linear(label, Some(unit)) };
+    let picture = HeatMap {
         x: limited("Place along the pipe", "m", [0.0, 1.0]),
         y: limited("Time", "s", [0.0, 4.0]),
-        value: Axis::linear("Packing fraction of the grains in a slice of the pipe", None),
+        value: ChartAxis::linear("Packing fraction of the grains in a slice of the pipe", None),
         rows: (0..80).map(|j| (0..120).map(|i| value(i, j)).collect()).collect(),
     };
     figure("map", "Grains bunch up: density over place and time", Picture::Map(picture))
@@ -100,14 +108,17 @@ pub(crate) fn panels() -> Figure {
                 .map(move |i| 10f64.powf(1.0 + f64::from(i) * 0.1))
                 .map(move |x| (x, factor * x.powf(power)))
         };
-        Chart::of(Axis::logarithmic("discs", None), Axis::logarithmic("Time of a collision", Some("µs")))
-            .series("list and queue", Style::Joined, 0, curve(0.1).step_by(5))
-            .series("grid and tournament", Style::Joined, 1, curve(0.3).step_by(5))
-            .series("n log n", Style::Dashed, 6, curve(0.2))
-            .band(Band::of_x("L1", [300.0; 2]))
-            .band(Band::of_x("L2", [9000.0; 2]))
-            .band(Band::of_x("L3", [11000.0; 2]))
-            .band(Band::of_y("as it stands", [3.0; 2]))
+        Chart::of(
+            ChartAxis::logarithmic("discs", None),
+            ChartAxis::logarithmic("Time of a collision", Some("µs")),
+        )
+        .series("list and queue", Style::Joined, 0, curve(0.1).step_by(5))
+        .series("grid and tournament", Style::Joined, 1, curve(0.3).step_by(5))
+        .series("n log n", Style::Dashed, 6, curve(0.2))
+        .band(ChartBand::of_x("L1", [300.0; 2]))
+        .band(ChartBand::of_x("L2", [9000.0; 2]))
+        .band(ChartBand::of_x("L3", [11000.0; 2]))
+        .band(ChartBand::of_y("as it stands", [3.0; 2]))
     };
     let all = [("5×5", 1.0), ("7×7", 2.0), ("round, 24 places", 0.4)]
         .map(|(name, factor)| (name.to_owned(), chart(factor)));
@@ -126,10 +137,12 @@ pub(crate) fn names() -> Figure {
         "kepler",
     ];
     let points = (0..7).map(|i| (f64::from(i), 1.0 + 0.2 * f64::from(i % 3), [0.7, 1.9]));
-    let chart =
-        Chart::of(Axis::names("map", maps), Axis::linear("edge of what works over the step of theory", None))
-            .series("measured", Style::Points, 0, points)
-            .band(Band::of_y("theory", [1.0; 2]));
+    let chart = Chart::of(
+        ChartAxis::names("map", maps),
+        ChartAxis::linear("edge of what works over the step of theory", None),
+    )
+    .series("measured", Style::Points, 0, points)
+    .band(ChartBand::of_y("theory", [1.0; 2]));
     figure("names", "Edge over theory", single(chart))
 }
 
@@ -138,9 +151,9 @@ pub(crate) fn named_rows() -> Figure {
     let Picture::Charts(mut charts) = names().picture else { unreachable!() };
     let Chart { x, y, mut series, .. } = charts.remove(0).1;
     for point in &mut series[0].points {
-        *point = Point::at(point.y, point.x);
+        *point = SeriesPoint::at(point.y, point.x);
     }
-    let chart = Chart { x: y, y: x, series, bands: vec![Band::of_x("theory", [1.0; 2])] };
+    let chart = Chart { x: y, y: x, series, bands: vec![ChartBand::of_x("theory", [1.0; 2])] };
     figure("named-rows", "Edge over theory", single(chart))
 }
 
@@ -149,10 +162,10 @@ pub(crate) fn few_cells() -> Figure {
     let rows = (0..5).map(|j| {
         (0..6).map(|i| if i + j == 9 { f64::NAN } else { 1.03 * f64::from(1 + i * j * j) }).collect()
     });
-    let map = Map {
-        x: Axis::names("search", ["lists", "lattice", "sectors", "fast", "faithful", "pairs"]),
-        y: Axis::logarithmic("number of particles", None).between([31.6, 3.16e6]),
-        value: Axis::logarithmic("Time over that of the cheapest", None),
+    let map = HeatMap {
+        x: ChartAxis::names("search", ["lists", "lattice", "sectors", "fast", "faithful", "pairs"]),
+        y: ChartAxis::logarithmic("number of particles", None).between([31.6, 3.16e6]),
+        value: ChartAxis::logarithmic("Time over that of the cheapest", None),
         rows: rows.collect(),
     };
     figure("few-cells", "Time lost by the wrong choice", Picture::Map(map))
@@ -173,8 +186,8 @@ pub(crate) fn mask() -> Figure {
                 }
             };
             let corners = [[x - 0.5, y - 0.5], [x + 0.5, y + 0.5]];
-            shapes.push(Shape::Rectangle { corners, tint });
-            shapes.push(Shape::Text { centre: [x, y], height: 0.26, words });
+            shapes.push(DrawnShape::Rectangle { corners, tint });
+            shapes.push(DrawnShape::Text { centre: [x, y], height: 0.26, words });
         }
     }
     let picture =
@@ -197,7 +210,7 @@ fn pipe_of(name: &str, columns: u32, width: f64, title: &str) -> Figure {
     let length = f64::from(columns);
     for i in 0..=columns {
         for y in [0.0, 10.0] {
-            shapes.push(Shape::Disc { centre: [f64::from(i), y], radius: 0.5, tint: Tint::Still });
+            shapes.push(DrawnShape::Disc { centre: [f64::from(i), y], radius: 0.5, tint: Tint::Still });
         }
     }
     for i in 0..columns {
@@ -205,7 +218,7 @@ fn pipe_of(name: &str, columns: u32, width: f64, title: &str) -> Figure {
             // Arbitrary repeating numbers between 0 and 1.
             let [a, b, c] = [7, 11, 13].map(|k| f64::from((i * 37 + j * 101 + 17) * k % 97) / 96.0);
             let centre = [f64::from(i) + 0.5 + 0.1 * a, 0.95 + 0.85 * f64::from(j) + 0.1 * b];
-            shapes.push(Shape::Disc { centre, radius: 0.32 + 0.1 * c, tint: Tint::Shade(a) });
+            shapes.push(DrawnShape::Disc { centre, radius: 0.32 + 0.1 * c, tint: Tint::Shade(a) });
         }
     }
     let window = [[0.0, -0.5], [length, 10.5]];

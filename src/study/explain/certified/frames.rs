@@ -1,11 +1,11 @@
 //! Frames of judged plans.
 
-use super::grid::Costs;
-use super::scenes::Class;
-use super::verdict::{Cause, Verdict};
-use super::{Carried, Certified, Judged};
-use crate::frame::{Cell, Frame, Rows};
-use crate::results::Made;
+use super::grid::RelativeCosts;
+use super::scenes::SceneClass;
+use super::verdict::{MissCause, PlanVerdict};
+use super::{CarriedPlan, JudgedPlan, TestedPlans};
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::results::FinishedItem;
 use crate::statistics::{quantile, wilson};
 
 /// Largest factor between predicted and actual time that counts as correct.
@@ -16,20 +16,20 @@ const BASELINES: [&str; 3] = ["the scene's own values", "always lists", "f64 at 
 const PARTS: (u32, f64) = (40, 2.0);
 
 /// Returns the frames of judged plans.
-pub(crate) fn made(certified: &Certified) -> Made {
+pub(crate) fn made(certified: &TestedPlans) -> FinishedItem {
     let plans = &certified.plans;
     let frames =
         [within(plans), table(plans), costs(plans), errors(plans), cost_curves(plans), summary(certified)];
-    Made::of(frames).with_seeds([1, 1001, 11001, 21001])
+    FinishedItem::of(frames).with_seeds([1, 1001, 11001, 21001])
 }
 
-impl Judged {
-    fn carried(&self) -> Option<&Carried> {
+impl JudgedPlan {
+    fn carried(&self) -> Option<&CarriedPlan> {
         self.outcome.as_ref().ok()
     }
 
     /// The verdict, if it is decided.
-    fn decided(&self) -> Option<&Verdict> {
+    fn decided(&self) -> Option<&PlanVerdict> {
         self.carried()?.verdict.as_ref().filter(|verdict| verdict.is_decided)
     }
 
@@ -44,17 +44,17 @@ impl Judged {
 }
 
 /// Judged plans of one class, or of all.
-struct Of<'j> {
+struct PlanGroup<'j> {
     name: &'static str,
-    plans: Vec<&'j Judged>,
+    plans: Vec<&'j JudgedPlan>,
 }
 
-impl Of<'_> {
+impl PlanGroup<'_> {
     fn plans_that(&self, fate: &str) -> usize {
         self.plans.iter().filter(|it| it.fate() == fate).count()
     }
 
-    fn runs(&self, count: impl Fn(&Verdict) -> usize) -> usize {
+    fn runs(&self, count: impl Fn(&PlanVerdict) -> usize) -> usize {
         self.plans.iter().filter_map(|it| it.decided()).map(count).sum()
     }
 
@@ -68,15 +68,15 @@ impl Of<'_> {
 }
 
 /// Runs within the error, and causes of misses, for each class and for all.
-fn within(plans: &[Judged]) -> Frame {
-    let all = Of { name: "all", plans: plans.iter().collect() };
-    let of_class = |class: Class| Of {
+fn within(plans: &[JudgedPlan]) -> ResultFrame {
+    let all = PlanGroup { name: "all", plans: plans.iter().collect() };
+    let of_class = |class: SceneClass| PlanGroup {
         name: class.name(),
         plans: plans.iter().filter(|it| it.class == class).collect(),
     };
-    let classes = Class::ALL.into_iter().map(of_class).filter(|of| !of.plans.is_empty());
-    let part = |at: usize| move |of: &Of<'_>| Some(of.share()?[at]);
-    Rows::of(classes.chain([all]))
+    let classes = SceneClass::ALL.into_iter().map(of_class).filter(|of| !of.plans.is_empty());
+    let part = |at: usize| move |of: &PlanGroup<'_>| Some(of.share()?[at]);
+    FrameBuilder::of(classes.chain([all]))
         .text("class", |of| of.name)
         .count("plans asked for", |of| of.plans.len())
         .count("refused", |of| of.plans_that("refused"))
@@ -86,17 +86,17 @@ fn within(plans: &[Judged]) -> Frame {
         .number("share within", 3, part(0))
         .number("lower end (95 %)", 3, part(1))
         .number("upper end (95 %)", 3, part(2))
-        .count("missed by bias", |of| of.runs(|it| it.missed_by(Cause::Bias)))
-        .count("missed by statistics", |of| of.runs(|it| it.missed_by(Cause::Statistics)))
+        .count("missed by bias", |of| of.runs(|it| it.missed_by(MissCause::Bias)))
+        .count("missed by statistics", |of| of.runs(|it| it.missed_by(MissCause::Statistics)))
         .count("broken", |of| of.runs(|it| it.broken))
         .frame("within", "Runs within the target error")
 }
 
 /// Reason why a plan was refused or is undecided; otherwise the cause of its misses.
-fn because(it: &Judged) -> String {
+fn because(it: &JudgedPlan) -> String {
     match (&it.outcome, it.decided()) {
         (Err(why), _) => why.clone(),
-        (Ok(Carried { reference: Err(why), .. }), _) => format!("no reference: {why}"),
+        (Ok(CarriedPlan { reference: Err(why), .. }), _) => format!("no reference: {why}"),
         (Ok(_), None) => "the error bar of the reference exceeds a third of the error".to_owned(),
         (Ok(_), Some(verdict)) if verdict.within + verdict.broken < verdict.runs => {
             verdict.cause.word().to_owned()
@@ -105,16 +105,16 @@ fn because(it: &Judged) -> String {
     }
 }
 
-fn count(of: Option<usize>) -> Cell {
-    of.map_or(Cell::Nothing, |of| Cell::Count(of as u64))
+fn count(of: Option<usize>) -> TableCell {
+    of.map_or(TableCell::Nothing, |of| TableCell::Count(of as u64))
 }
 
-fn table(plans: &[Judged]) -> Frame {
-    let verdict = |it: &&Judged| it.carried().and_then(|it| it.verdict.clone());
-    let reference = |it: &&Judged| it.carried().and_then(|it| it.reference.as_ref().ok().copied());
+fn table(plans: &[JudgedPlan]) -> ResultFrame {
+    let verdict = |it: &&JudgedPlan| it.carried().and_then(|it| it.verdict.clone());
+    let reference = |it: &&JudgedPlan| it.carried().and_then(|it| it.reference.as_ref().ok().copied());
     let seconds =
-        |at: usize| move |it: &&Judged| it.carried().map(|it| it.seconds[at]).filter(|it| it.is_finite());
-    Rows::of(plans)
+        |at: usize| move |it: &&JudgedPlan| it.carried().map(|it| it.seconds[at]).filter(|it| it.is_finite());
+    FrameBuilder::of(plans)
         .text("class", |it| it.class.name())
         .text("scene", |it| it.scene.clone())
         .text("quantity", |it| it.quantity)
@@ -138,19 +138,19 @@ fn table(plans: &[Judged]) -> Frame {
 }
 
 /// A plan with its costs relative to the best of a grid.
-type Compared<'j> = (&'j Judged, &'j Carried, &'j Costs);
+type ComparedPlan<'j> = (&'j JudgedPlan, &'j CarriedPlan, &'j RelativeCosts);
 
-fn compared(plans: &[Judged]) -> Vec<Compared<'_>> {
+fn compared(plans: &[JudgedPlan]) -> Vec<ComparedPlan<'_>> {
     let of = |it| {
-        let carried = Judged::carried(it)?;
+        let carried = JudgedPlan::carried(it)?;
         Some((it, carried, carried.costs.as_ref()?))
     };
     plans.iter().filter_map(of).collect()
 }
 
-fn costs(plans: &[Judged]) -> Frame {
-    let baseline = |at: usize| move |(.., costs): &Compared<'_>| costs.baselines[at];
-    Rows::of(compared(plans))
+fn costs(plans: &[JudgedPlan]) -> ResultFrame {
+    let baseline = |at: usize| move |(.., costs): &ComparedPlan<'_>| costs.baselines[at];
+    FrameBuilder::of(compared(plans))
         .text("scene", |(it, ..)| it.scene.clone())
         .text("class", |(it, ..)| it.class.name())
         .text("quantity", |(it, ..)| it.quantity)
@@ -168,9 +168,9 @@ fn costs(plans: &[Judged]) -> Frame {
 }
 
 /// Share of runs whose error is at most a given part of the target.
-fn errors(plans: &[Judged]) -> Frame {
-    let of_class = |class: Class| {
-        let decided = plans.iter().filter(|it| it.class == class).filter_map(Judged::decided);
+fn errors(plans: &[JudgedPlan]) -> ResultFrame {
+    let of_class = |class: SceneClass| {
+        let decided = plans.iter().filter(|it| it.class == class).filter_map(JudgedPlan::decided);
         let mut all: Vec<f64> = decided.flat_map(|it| it.errors.iter().copied()).collect();
         all.sort_by(f64::total_cmp);
         let (steps, last) = PARTS;
@@ -181,7 +181,7 @@ fn errors(plans: &[Judged]) -> Frame {
         };
         (0..=steps).map(point).filter(|(.., share)| share.is_finite()).collect::<Vec<_>>()
     };
-    Rows::of(Class::ALL.into_iter().flat_map(of_class))
+    FrameBuilder::of(SceneClass::ALL.into_iter().flat_map(of_class))
         .text("class", |(class, ..)| *class)
         .number("error over the one asked for", 3, |(_, part, _)| *part)
         .number("runs with at most that (%)", 2, |(.., share)| *share)
@@ -189,9 +189,9 @@ fn errors(plans: &[Judged]) -> Frame {
 }
 
 /// Returns the share of plans over their largest cost relative to the best. A curve ends below 100 % where some plans do not reach the error.
-fn cost_curves(plans: &[Judged]) -> Frame {
+fn cost_curves(plans: &[JudgedPlan]) -> ResultFrame {
     let compared = compared(plans);
-    let curve = |name: &'static str, of: &dyn Fn(&Costs) -> Option<f64>| {
+    let curve = |name: &'static str, of: &dyn Fn(&RelativeCosts) -> Option<f64>| {
         let mut ratios: Vec<f64> = compared.iter().filter_map(|(.., costs)| of(costs)).collect();
         ratios.sort_by(f64::total_cmp);
         let points = ratios.into_iter().zip(1_u32..);
@@ -200,21 +200,21 @@ fn cost_curves(plans: &[Judged]) -> Frame {
     };
     let plans = curve("plans", &|it| Some(it.plan));
     let baselines = BASELINES.iter().enumerate().map(|(at, name)| curve(name, &move |it| it.baselines[at]));
-    Rows::of(std::iter::once(plans).chain(baselines).flatten())
+    FrameBuilder::of(std::iter::once(plans).chain(baselines).flatten())
         .text("configuration", |(name, ..)| *name)
         .number("wall time over that of the best", 3, |(_, ratio, _)| *ratio)
         .number("plans that cost at most that (%)", 1, |(.., share)| *share)
         .frame("cost-curves", "Plans by wall time over the best")
 }
 
-fn summary(certified: &Certified) -> Frame {
+fn summary(certified: &TestedPlans) -> ResultFrame {
     let (plans, effort) = (&certified.plans, certified.effort);
     let times: Vec<[f64; 2]> = plans.iter().filter_map(|it| Some(it.carried()?.seconds)).collect();
     let timely = times.iter().filter(|[foreseen, taken]| (taken / foreseen).max(foreseen / taken) <= TIME);
     let timely = timely.count();
     let mut costs: Vec<f64> = compared(plans).iter().map(|(.., costs)| costs.plan).collect();
     costs.sort_by(f64::total_cmp);
-    Rows::of([()])
+    FrameBuilder::of([()])
         .count("plans", |()| plans.len())
         .count("carried out", |()| times.len())
         .count("within the time foreseen", |()| timely)

@@ -1,16 +1,16 @@
 //! Wall time of a plan relative to the best of a grid: every integrator and precision, at several steps, with the cheapest search.
 
-use super::super::lengths::{Chance, SAMPLES};
-use super::super::recommended::Plan;
+use super::super::lengths::{SAMPLES, StatisticalError};
+use super::super::recommended::RunPlan;
 use super::super::timing::OF_LIMIT;
-use super::reference::Reference;
-use super::runs::{Ensemble, WHOLE, side_by_side};
-use super::verdict::Verdict;
-use crate::study::Choice;
-use crate::study::trial::Span;
+use super::reference::ReferenceMean;
+use super::runs::{StartEnsemble, WHOLE, side_by_side};
+use super::verdict::PlanVerdict;
+use crate::study::SettingChoice;
+use crate::study::trial::SampleSpan;
 use rayon::ThreadPoolBuilder;
-use stripmine_physics::averages::{Outcome, of_independent};
-use stripmine_physics::method::{Decides, Prepared};
+use stripmine_physics::averages::{AverageOutcome, of_independent};
+use stripmine_physics::method::{ChoiceEffect, Prepared};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
@@ -27,8 +27,8 @@ const STARTS: usize = 20_000;
 
 /// A configuration at a step, as measured with one thread.
 #[derive(Clone, Debug)]
-struct Point {
-    choice: Choice,
+struct GridPoint {
+    choice: SettingChoice,
     step: Option<f64>,
     /// Wall seconds of a unit of time, of a row, and of a run apart from these.
     cost: f64,
@@ -40,7 +40,7 @@ struct Point {
 
 /// Wall times relative to the best of the grid.
 #[derive(Clone, Debug)]
-pub(crate) struct Costs {
+pub(crate) struct RelativeCosts {
     pub(crate) plan: f64,
     /// Cost of the plan's configuration and step, run for as long as the reference requires; none where their bias exceeds the error.
     pub(crate) choice: Option<f64>,
@@ -53,13 +53,13 @@ pub(crate) struct Costs {
 }
 
 /// A scene with every configuration measured.
-pub(crate) struct Grid<'g> {
-    of: &'g Ensemble<'g>,
-    reference: Reference,
-    chance: Chance,
-    points: Vec<Point>,
+pub(crate) struct ConfigurationGrid<'g> {
+    of: &'g StartEnsemble<'g>,
+    reference: ReferenceMean,
+    chance: StatisticalError,
+    points: Vec<GridPoint>,
     /// Measurements of the plans, in their order; none where the run failed.
-    plans: Vec<Option<Point>>,
+    plans: Vec<Option<GridPoint>>,
     /// Longest step of the scene's own integrator in f64 (time).
     limit: Option<f64>,
     /// Time with neighbour lists relative to the cheapest search; none without lists.
@@ -68,22 +68,22 @@ pub(crate) struct Grid<'g> {
     speedup: f64,
 }
 
-impl<'g> Grid<'g> {
+impl<'g> ConfigurationGrid<'g> {
     /// Measures the grid and the plans, in about `seconds` of wall time.
     pub(super) fn of(
-        of: &'g Ensemble<'g>,
-        reference: Reference,
-        plans: &[&Plan],
+        of: &'g StartEnsemble<'g>,
+        reference: ReferenceMean,
+        plans: &[&RunPlan],
         seconds: f64,
-    ) -> Result<Grid<'g>, String> {
+    ) -> Result<ConfigurationGrid<'g>, String> {
         let case = of.case;
-        let all = Choice::all(case.entry.axes);
+        let all = SettingChoice::all(case.entry.axes);
         let (search, lists) = of.cheapest_search(&all, SEARCHES * seconds)?;
-        let is_of_search = |choice: &&Choice| choice.agrees(&search, Decides::Cost);
-        let mut asked: Vec<(Choice, Overrides, Option<f64>)> = vec![];
+        let is_of_search = |choice: &&SettingChoice| choice.agrees(&search, ChoiceEffect::Cost);
+        let mut asked: Vec<(SettingChoice, Overrides, Option<f64>)> = vec![];
         for choice in all.iter().filter(is_of_search) {
             let longest = of.longest(choice);
-            let own = case.step().filter(|_| choice.agrees(&case.own, Decides::Order));
+            let own = case.step().filter(|_| choice.agrees(&case.own, ChoiceEffect::Order));
             let steps: Vec<Option<f64>> = match longest {
                 Some(longest) => STEPS.map(|part| part * longest).into_iter().chain(own).map(Some).collect(),
                 None => vec![None],
@@ -102,13 +102,13 @@ impl<'g> Grid<'g> {
             let (choice, overrides, step) = &asked[at];
             of.point(choice, *step, overrides, STARTS + at, share, &reference)
         });
-        let mut points: Vec<Option<Point>> =
+        let mut points: Vec<Option<GridPoint>> =
             measured.map_err(|error| error.to_string())?.into_iter().map(Result::ok).collect();
         let plans = points.split_off(of_grid);
         let in_f64 = case.own.with(&[("precision", "f64")]);
-        Ok(Grid {
+        Ok(ConfigurationGrid {
             reference,
-            chance: Chance::of(&reference.known, of.asking.whole),
+            chance: StatisticalError::of(&reference.known, of.asking.whole),
             points: points.into_iter().flatten().collect(),
             plans,
             limit: of.longest(&in_f64),
@@ -119,30 +119,36 @@ impl<'g> Grid<'g> {
     }
 
     /// Costs of a numbered plan for an error, with the bias of its runs; none where nothing reaches the error or the plan was not measured.
-    pub(crate) fn costs(&self, number: usize, plan: &Plan, verdict: &Verdict, error: f64) -> Option<Costs> {
-        let all: Vec<(&Point, f64)> = (self.points.iter())
+    pub(crate) fn costs(
+        &self,
+        number: usize,
+        plan: &RunPlan,
+        verdict: &PlanVerdict,
+        error: f64,
+    ) -> Option<RelativeCosts> {
+        let all: Vec<(&GridPoint, f64)> = (self.points.iter())
             .filter_map(|point| Some((point, self.seconds(point, bias(point.off), error)?)))
             .collect();
-        let cheapest = |of: &dyn Fn(&Point) -> bool| {
+        let cheapest = |of: &dyn Fn(&GridPoint) -> bool| {
             let all = all.iter().filter(|(point, _)| of(point));
             all.min_by(|a, b| a.1.total_cmp(&b.1)).copied()
         };
         let (best, seconds) = cheapest(&|_| true)?;
         let own = &self.of.case.own;
-        let is_near = |point: &Point, step: Option<f64>| match (point.step, step) {
+        let is_near = |point: &GridPoint, step: Option<f64>| match (point.step, step) {
             (Some(own), Some(other)) => (own / other - 1.0).abs() < 1e-9,
             (own, other) => own.is_none() && other.is_none(),
         };
-        let has_own = |point: &Point, decides: Decides| point.choice.agrees(own, decides);
+        let has_own = |point: &GridPoint, decides: ChoiceEffect| point.choice.agrees(own, decides);
         let of_own = cheapest(&|point| {
-            has_own(point, Decides::Order)
-                && has_own(point, Decides::Digits)
+            has_own(point, ChoiceEffect::Order)
+                && has_own(point, ChoiceEffect::Digits)
                 && is_near(point, self.of.case.step())
         });
         let in_f64 = own.with(&[("precision", "f64")]);
         let at_limit = cheapest(&|point| {
-            has_own(point, Decides::Order)
-                && point.choice.agrees(&in_f64, Decides::Digits)
+            has_own(point, ChoiceEffect::Order)
+                && point.choice.agrees(&in_f64, ChoiceEffect::Digits)
                 && is_near(point, self.limit)
         });
         let planned = self.plans[number].as_ref()?;
@@ -153,7 +159,7 @@ impl<'g> Grid<'g> {
         };
         let needed = self.seconds(planned, known, error);
         let taken = self.as_planned(planned, plan);
-        Some(Costs {
+        Some(RelativeCosts {
             plan: needed.map_or(taken, |needed| needed.max(taken)) / seconds,
             choice: needed.map(|needed| needed / seconds),
             baselines: [of_own.map(|(_, it)| it / seconds), self.lists, at_limit.map(|(_, it)| it / seconds)],
@@ -163,7 +169,7 @@ impl<'g> Grid<'g> {
     }
 
     /// Wall seconds of a plan as stated.
-    fn as_planned(&self, point: &Point, plan: &Plan) -> f64 {
+    fn as_planned(&self, point: &GridPoint, plan: &RunPlan) -> f64 {
         let rows = point.start + point.row * plan.rows;
         match plan.seeds {
             1 => rows + point.cost / self.speedup * plan.time,
@@ -175,7 +181,7 @@ impl<'g> Grid<'g> {
     }
 
     /// Wall seconds in which a configuration reaches an error, by the rules of plans; none where its bias exceeds the error.
-    fn seconds(&self, point: &Point, bias: f64, error: f64) -> Option<f64> {
+    fn seconds(&self, point: &GridPoint, bias: f64, error: f64) -> Option<f64> {
         let left = Some(error - bias).filter(|left| *left > 0.0)?;
         let cores = rayon::current_num_threads() as f64;
         let known = &self.reference.known;
@@ -207,12 +213,12 @@ fn bias([off, bar]: [f64; 2]) -> f64 {
 }
 
 /// Label of the configuration and its step.
-fn in_words(point: &Point) -> String {
+fn in_words(point: &GridPoint) -> String {
     let step = point.step.map(|step| format!(", dt {}", significant(step, 2)));
     point.choice.label() + &step.unwrap_or_default()
 }
 
-impl Ensemble<'_> {
+impl StartEnsemble<'_> {
     /// Overrides of a configuration with a step (time).
     fn at(&self, overrides: &Overrides, step: Option<f64>) -> Overrides {
         match self.case.entry.trials.zip(step) {
@@ -222,7 +228,7 @@ impl Ensemble<'_> {
     }
 
     /// Longest step of a configuration that theory allows (time).
-    fn longest(&self, choice: &Choice) -> Option<f64> {
+    fn longest(&self, choice: &SettingChoice) -> Option<f64> {
         let own = self.case.step()?;
         let prepared = self.case.prepared_with(&choice.overrides()).ok()?;
         let limit = prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
@@ -238,12 +244,17 @@ impl Ensemble<'_> {
     }
 
     /// Returns the cheapest search with the scene's own integrator, precision and step, and the time with neighbour lists relative to it.
-    fn cheapest_search(&self, all: &[Choice], seconds: f64) -> Result<(Choice, Option<f64>), String> {
+    fn cheapest_search(
+        &self,
+        all: &[SettingChoice],
+        seconds: f64,
+    ) -> Result<(SettingChoice, Option<f64>), String> {
         let own = &self.case.own;
-        let is_alike = |it: &&Choice| it.agrees(own, Decides::Order) && it.agrees(own, Decides::Digits);
-        let searches: Vec<&Choice> = all.iter().filter(is_alike).collect();
+        let is_alike =
+            |it: &&SettingChoice| it.agrees(own, ChoiceEffect::Order) && it.agrees(own, ChoiceEffect::Digits);
+        let searches: Vec<&SettingChoice> = all.iter().filter(is_alike).collect();
         let each = seconds / searches.len() as f64;
-        let mut timed: Vec<(&Choice, f64)> = searches
+        let mut timed: Vec<(&SettingChoice, f64)> = searches
             .into_iter()
             .filter_map(|choice| {
                 let prepared = self.case.prepared_with(&choice.overrides()).ok()?;
@@ -252,13 +263,14 @@ impl Ensemble<'_> {
             .collect();
         timed.sort_by(|a, b| a.1.total_cmp(&b.1));
         let (best, least) = timed.first().ok_or("no neighbour search can run the scene")?;
-        let by_lists = |it: &&(&Choice, f64)| it.0.settings().any(|it| it == ("search", "neighbor-list"));
+        let by_lists =
+            |it: &&(&SettingChoice, f64)| it.0.settings().any(|it| it == ("search", "neighbor-list"));
         let lists = timed.iter().find(by_lists).map(|(_, cost)| cost / least);
         Ok(((*best).clone(), lists))
     }
 
     /// Time with one thread relative to all threads.
-    fn speedup(&self, choice: &Choice, seconds: f64) -> Result<f64, String> {
+    fn speedup(&self, choice: &SettingChoice, seconds: f64) -> Result<f64, String> {
         let prepared = self.case.prepared_with(&choice.overrides()).map_err(|errors| errors.to_string())?;
         let all = self.trial.timed(&prepared, 0.5 * seconds).map_err(|failure| failure.to_string())?;
         Ok(self.timed(&prepared, 0.5 * seconds)? / all.seconds)
@@ -267,20 +279,21 @@ impl Ensemble<'_> {
     /// Measures a configuration in about `seconds`.
     fn point(
         &self,
-        choice: &Choice,
+        choice: &SettingChoice,
         step: Option<f64>,
         overrides: &Overrides,
         number: usize,
         seconds: f64,
-        reference: &Reference,
-    ) -> Result<Point, String> {
+        reference: &ReferenceMean,
+    ) -> Result<GridPoint, String> {
         let prepared = self.start(overrides, number)?;
         let span = match (self.target.is_kept(), self.asking.whole) {
-            (true, _) => {
-                Span::Time(self.case.duration().ok_or("the scene states no run time")?, Some(LATE * seconds))
-            }
-            (_, Some(time)) => Span::Time(time, None),
-            _ => Span::Seconds(seconds),
+            (true, _) => SampleSpan::Time(
+                self.case.duration().ok_or("the scene states no run time")?,
+                Some(LATE * seconds),
+            ),
+            (_, Some(time)) => SampleSpan::Time(time, None),
+            _ => SampleSpan::Seconds(seconds),
         };
         let begun = self.trial.watch.now();
         let first = self.sample(&prepared, span)?;
@@ -288,7 +301,7 @@ impl Ensemble<'_> {
             return Err(first.warned());
         }
         let off = match (first.outcome, self.asking.whole) {
-            (Outcome::Kept { farthest, .. }, _) => [farthest, 0.0],
+            (AverageOutcome::Kept { farthest, .. }, _) => [farthest, 0.0],
             (_, None) => {
                 let known = first.known().ok_or_else(|| first.without_mean())?;
                 [known.mean - reference.known.mean, known.bar.hypot(reference.known.bar)]
@@ -303,17 +316,24 @@ impl Ensemble<'_> {
                 [mean - reference.known.mean, bar.hypot(reference.known.bar)]
             }
         };
-        Ok(Point { choice: choice.clone(), step, cost: first.cost, row: first.row, start: first.start, off })
+        Ok(GridPoint {
+            choice: choice.clone(),
+            step,
+            cost: first.cost,
+            row: first.row,
+            start: first.start,
+            off,
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::runs::Asking;
+    use super::super::runs::EstimatedMean;
     use super::*;
-    use crate::study::Case;
-    use crate::study::explain::{Target, certified::by_trials};
-    use crate::study::trial::{Known, Stopwatch, Trial};
+    use crate::study::StudyCase;
+    use crate::study::explain::{PlanTarget, certified::by_trials};
+    use crate::study::trial::{MeanEstimate, Stopwatch, TrialControl};
     use std::sync::atomic::AtomicBool;
     use stripmine_physics::method::METHODS;
     use stripmine_physics::scene::Width;
@@ -328,16 +348,16 @@ mod tests {
     /// with a bias of 0.1 100 + 3. The speed of a hundred threads makes no plan of several runs cheaper.
     #[test]
     fn costs_are_relative_to_the_best_configuration() {
-        let case = Case::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();
+        let case = StudyCase::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();
         let (watch, stop) = (Stopwatch::made(400.0), AtomicBool::new(false));
-        let trial = Trial { watch: &watch, stop: &stop };
-        let target = Target::of(&case, Some("pressure"), Some(Width::Percent(20.0))).unwrap();
+        let trial = TrialControl { watch: &watch, stop: &stop };
+        let target = PlanTarget::of(&case, Some("pressure"), Some(Width::Percent(20.0))).unwrap();
         let plan = by_trials(&case, &target, 2.0, trial).unwrap();
-        let plan = Plan { seeds: 1, time: 100.0, is_whole: false, starts_differ: None, ..plan };
-        let asking = Asking::from(&plan);
-        let of = Ensemble { case: &case, target: &target, trial, asking };
-        let known = Known { square: 16.0, transient: 3.0, apart: 1.0, ..Known::exactly(7.0) };
-        let point = |choice: &Choice, step: f64, cost: f64, off: [f64; 2]| Point {
+        let plan = RunPlan { seeds: 1, time: 100.0, is_whole: false, starts_differ: None, ..plan };
+        let asking = EstimatedMean::from(&plan);
+        let of = StartEnsemble { case: &case, target: &target, trial, asking };
+        let known = MeanEstimate { square: 16.0, transient: 3.0, apart: 1.0, ..MeanEstimate::exactly(7.0) };
+        let point = |choice: &SettingChoice, step: f64, cost: f64, off: [f64; 2]| GridPoint {
             choice: choice.clone(),
             step: Some(step),
             cost: 100.0 * cost,
@@ -347,10 +367,10 @@ mod tests {
         };
         let (own, step) = (case.own.clone(), case.step().unwrap());
         let other = own.with(&[("integrator", "velocity-verlet")]);
-        let grid = |points: Vec<Point>, planned: Point| Grid {
+        let grid = |points: Vec<GridPoint>, planned: GridPoint| ConfigurationGrid {
             of: &of,
-            reference: Reference { known, step: None },
-            chance: Chance::of(&known, None),
+            reference: ReferenceMean { known, step: None },
+            chance: StatisticalError::of(&known, None),
             points,
             plans: vec![Some(planned)],
             limit: Some(2.0 * step),
@@ -364,7 +384,7 @@ mod tests {
             point(&other, 4.0 * step, 0.01, [0.6, 0.1]),
         ];
         let [of_own, best] = [1.0 + 0.1 * 67.0, 1.0 + 0.05 * 103.0];
-        let verdict = |bias: f64| Verdict::of(&[Ok(7.0 + bias), Ok(7.0 + bias)], [7.0, 0.0], 0.5);
+        let verdict = |bias: f64| PlanVerdict::of(&[Ok(7.0 + bias), Ok(7.0 + bias)], [7.0, 0.0], 0.5);
         let costs = |cost: f64, bias: f64| {
             let found = grid(points.clone(), point(&own, 2.0 * step, cost, [0.0, 0.0]));
             found.costs(0, &plan, &verdict(bias), 0.5).unwrap()

@@ -1,8 +1,8 @@
 //! Reference mean of a scene, by runs of its reference configuration at a short step, independent of the planner.
 
 use super::super::in_unit;
-use super::runs::{Ensemble, WHOLE, side_by_side};
-use crate::study::trial::{Known, Sample, Span};
+use super::runs::{StartEnsemble, WHOLE, side_by_side};
+use crate::study::trial::{MeanEstimate, SampleSpan, TrialSample};
 use stripmine_physics::scene::{Overrides, Width};
 
 /// Step of the reference, in parts of the scene's own.
@@ -22,25 +22,25 @@ const STARTS: usize = 10_000;
 
 /// The reference mean.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reference {
+pub(crate) struct ReferenceMean {
     /// Mean of all its runs; exactly 0 for the deviation of a conserved quantity.
-    pub known: Known,
+    pub known: MeanEstimate,
     /// Its step (time); none where the method takes none.
     pub step: Option<f64>,
 }
 
-impl Reference {
+impl ReferenceMean {
     /// The mean, and half the width of its 95 % interval.
     pub(super) fn mean(&self) -> [f64; 2] {
         [self.known.mean, self.known.bar]
     }
 }
 
-impl Ensemble<'_> {
+impl StartEnsemble<'_> {
     /// Measures the reference mean to a third of an error, or as well as `seconds` of wall time allow.
-    pub(crate) fn reference(&self, error: Width, seconds: f64) -> Result<Reference, String> {
+    pub(crate) fn reference(&self, error: Width, seconds: f64) -> Result<ReferenceMean, String> {
         if self.target.is_kept() {
-            return Ok(Reference { known: Known::exactly(0.0), step: None });
+            return Ok(ReferenceMean { known: MeanEstimate::exactly(0.0), step: None });
         }
         let mut step = self.case.step().map(|own| STEP * own);
         let mut halvings = if step.is_some() { HALVINGS } else { 0 };
@@ -48,7 +48,7 @@ impl Ensemble<'_> {
             let overrides = self.reference_at(step);
             // The last attempt is accepted, warnings included.
             match self.mean_by(&overrides, error, seconds, halvings == 0) {
-                Ok(known) => return Ok(Reference { known, step }),
+                Ok(known) => return Ok(ReferenceMean { known, step }),
                 Err(why) if halvings == 0 => return Err(why),
                 Err(_) => (halvings, step) = (halvings - 1, step.map(|step| 0.5 * step)),
             }
@@ -67,9 +67,9 @@ impl Ensemble<'_> {
         error: Width,
         seconds: f64,
         bears_warnings: bool,
-    ) -> Result<Known, String> {
+    ) -> Result<MeanEstimate, String> {
         let begun = self.trial.watch.now();
-        let mut samples: Vec<Sample> = vec![];
+        let mut samples: Vec<TrialSample> = vec![];
         let mut span = SCOUT * seconds;
         loop {
             let first = STARTS + samples.len();
@@ -77,7 +77,7 @@ impl Ensemble<'_> {
                 let prepared = self.start(overrides, first + at)?;
                 self.sample(
                     &prepared,
-                    self.asking.whole.map_or(Span::Seconds(span), |time| Span::Time(time, None)),
+                    self.asking.whole.map_or(SampleSpan::Seconds(span), |time| SampleSpan::Time(time, None)),
                 )
             });
             for sample in more.map_err(|error| error.to_string())? {
@@ -91,11 +91,11 @@ impl Ensemble<'_> {
             let known = match self.asking.whole {
                 Some(time) => {
                     let means: Vec<f64> = samples.iter().map(|sample| sample.mean_over(WHOLE)).collect();
-                    Known::of_whole_runs(&means, time)
+                    MeanEstimate::of_whole_runs(&means, time)
                 }
-                None => joined(&samples.iter().filter_map(Sample::known).collect::<Vec<_>>()),
+                None => joined(&samples.iter().filter_map(TrialSample::known).collect::<Vec<_>>()),
             };
-            let excess = |known: &Known| (known.bar / (ENOUGH * in_unit(error, known.mean))).powi(2);
+            let excess = |known: &MeanEstimate| (known.bar / (ENOUGH * in_unit(error, known.mean))).powi(2);
             // The square of the error bar is inversely proportional to the time.
             let needed = known.as_ref().map_or(spent, |known| (LONGER * excess(known) - 1.0) * spent);
             span = needed.min(seconds - spent);
@@ -111,19 +111,20 @@ impl Ensemble<'_> {
 
 /// Mean over independent runs, each weighted by its time. Where they scatter by more than their error bars, the error bar is enlarged by Birge's
 /// ratio.
-pub(super) fn joined(runs: &[Known]) -> Option<Known> {
+pub(super) fn joined(runs: &[MeanEstimate]) -> Option<MeanEstimate> {
     let first = runs.first()?;
     if runs.iter().any(|run| run.bar == 0.0) {
         return Some(*first);
     }
     let all = runs.iter().map(|run| run.span).sum::<f64>();
-    let sum = |of: &dyn Fn(&Known, f64) -> f64| runs.iter().map(|run| of(run, run.span / all)).sum::<f64>();
+    let sum =
+        |of: &dyn Fn(&MeanEstimate, f64) -> f64| runs.iter().map(|run| of(run, run.span / all)).sum::<f64>();
     let mean = sum(&|run, weight| weight * run.mean);
     let bar = sum(&|run, weight| (weight * run.bar).powi(2)).sqrt();
     // Error bars are about two standard errors.
     let chi_square = sum(&|run, _| (2.0 * (run.mean - mean) / run.bar).powi(2));
     let ratio = (chi_square / (runs.len() as f64 - 1.0).max(1.0)).sqrt().max(1.0);
-    Some(Known {
+    Some(MeanEstimate {
         mean,
         bar: ratio * bar,
         square: ratio * ratio * sum(&|run, weight| weight * run.square),
@@ -141,9 +142,9 @@ pub(super) fn joined(runs: &[Known]) -> Option<Known> {
 mod tests {
     use super::*;
 
-    fn run(mean: f64, bar: f64, span: f64) -> Known {
+    fn run(mean: f64, bar: f64, span: f64) -> MeanEstimate {
         let square = bar * bar * span;
-        Known {
+        MeanEstimate {
             bar,
             square,
             span,
@@ -151,7 +152,7 @@ mod tests {
             transient: span,
             apart: 1.0,
             freedoms: 5.0,
-            ..Known::exactly(mean)
+            ..MeanEstimate::exactly(mean)
         }
     }
 

@@ -1,15 +1,15 @@
 //! Runs of a scene from independent starts: side by side, with one thread each.
 
-use super::super::Target;
-use super::super::recommended::Plan;
+use super::super::PlanTarget;
+use super::super::recommended::RunPlan;
 use super::super::whole::displaced_start;
-use crate::study::trial::{Sample, Span, Trial};
-use crate::study::{Case, first_line};
+use crate::study::trial::{SampleSpan, TrialControl, TrialSample};
+use crate::study::{StudyCase, first_line};
 use rayon::{ThreadPoolBuildError, ThreadPoolBuilder};
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use stripmine_physics::averages::Outcome;
+use stripmine_physics::averages::AverageOutcome;
 use stripmine_physics::method::Prepared;
 use stripmine_physics::scene::{Overrides, SEED};
 
@@ -22,28 +22,31 @@ const OF_TRIALS: u64 = 1000;
 
 /// Mean that a plan estimates: its runs, and the part of each run that is averaged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Asking {
+pub(crate) struct EstimatedMean {
     /// Time of a whole run, where the mean is taken over whole runs (time).
     pub whole: Option<f64>,
     /// Set where the mean depends on the scene's own start: another seed has another mean.
     pub(crate) is_of_own_start: bool,
 }
 
-impl From<&Plan> for Asking {
-    fn from(plan: &Plan) -> Asking {
-        Asking { whole: plan.is_whole.then_some(plan.time), is_of_own_start: plan.starts_differ.is_some() }
+impl From<&RunPlan> for EstimatedMean {
+    fn from(plan: &RunPlan) -> EstimatedMean {
+        EstimatedMean {
+            whole: plan.is_whole.then_some(plan.time),
+            is_of_own_start: plan.starts_differ.is_some(),
+        }
     }
 }
 
 /// Runs of a scene from any number of starts.
-pub(crate) struct Ensemble<'e> {
-    pub case: &'e Case,
-    pub target: &'e Target,
-    pub(crate) trial: Trial<'e>,
-    pub(crate) asking: Asking,
+pub(crate) struct StartEnsemble<'e> {
+    pub case: &'e StudyCase,
+    pub target: &'e PlanTarget,
+    pub(crate) trial: TrialControl<'e>,
+    pub(crate) asking: EstimatedMean,
 }
 
-impl Ensemble<'_> {
+impl StartEnsemble<'_> {
     /// Prepares the scene from a numbered start: another seed, or, without seeds, slightly displaced particles.
     pub(super) fn start(&self, overrides: &Overrides, number: usize) -> Result<Prepared, String> {
         let prepared = |overrides: &Overrides| {
@@ -62,20 +65,22 @@ impl Ensemble<'_> {
     }
 
     /// Runs to the end of a span and returns the sample.
-    pub(crate) fn sample(&self, prepared: &Prepared, span: Span) -> Result<Sample, String> {
+    pub(crate) fn sample(&self, prepared: &Prepared, span: SampleSpan) -> Result<TrialSample, String> {
         let observed = (self.case.entry.quantities, self.target.place);
         let sample = self.trial.sample(prepared, observed, span);
         let sample = sample.map_err(|failure| first_line(&failure.what()))?;
         match span {
-            Span::Time(time, _) | Span::Planned(time, _) => sample.cut_off(time).map_or(Ok(sample), Err),
-            Span::Seconds(_) => Ok(sample),
+            SampleSpan::Time(time, _) | SampleSpan::Planned(time, _) => {
+                sample.cut_off(time).map_or(Ok(sample), Err)
+            }
+            SampleSpan::Seconds(_) => Ok(sample),
         }
     }
 
     /// Result of a run: its mean, or the deviation of a conserved quantity.
-    pub(super) fn value(&self, sample: &Sample) -> Result<f64, String> {
+    pub(super) fn value(&self, sample: &TrialSample) -> Result<f64, String> {
         match sample.outcome {
-            Outcome::Kept { farthest, .. } => Ok(farthest),
+            AverageOutcome::Kept { farthest, .. } => Ok(farthest),
             _ if self.asking.whole.is_some() => Ok(sample.mean_over(WHOLE)),
             _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.without_mean()),
         }
@@ -83,13 +88,13 @@ impl Ensemble<'_> {
 
     /// Carries out a plan from starts that no other number uses, and returns the mean of all seeds and the wall seconds. The seeds run side by side
     /// if the plan is alone, otherwise one after the other.
-    fn carried_out(&self, plan: &Plan, number: usize, is_alone: bool) -> Result<[f64; 2], String> {
+    fn carried_out(&self, plan: &RunPlan, number: usize, is_alone: bool) -> Result<[f64; 2], String> {
         let seeds = plan.seeds as usize;
         let starts = (0..seeds).map(|seed| self.start(&plan.overrides, number * seeds + seed));
         let starts: Vec<Prepared> = starts.collect::<Result<_, _>>()?;
         let most = LATE * self.target.limit;
         // Every sample of a conserved quantity counts.
-        let span = if self.target.is_kept() { Span::Time } else { Span::Planned };
+        let span = if self.target.is_kept() { SampleSpan::Time } else { SampleSpan::Planned };
         let one = |at: usize| self.value(&self.sample(&starts[at], span(plan.time, Some(most)))?);
         let begun = self.trial.watch.now();
         let values: Vec<Result<f64, String>> = match is_alone && seeds > 1 {
@@ -108,7 +113,7 @@ impl Ensemble<'_> {
     /// [`ThreadPoolBuildError`] if threads cannot be started.
     pub(crate) fn estimates(
         &self,
-        plan: &Plan,
+        plan: &RunPlan,
         count: usize,
     ) -> Result<(Vec<Result<f64, String>>, f64), ThreadPoolBuildError> {
         let first = self.carried_out(plan, 0, true);

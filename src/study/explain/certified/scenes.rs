@@ -1,11 +1,11 @@
 //! Scenes that plans are tested with. No constant of the planner was fitted to them.
 
-use crate::study::{Case, StudyError};
+use crate::study::{StudyCase, StudyError};
 use stripmine_physics::method::METHODS;
 
 /// Kind of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Class {
+pub(crate) enum SceneClass {
     /// Grains driven by gravity or a wall.
     Driven,
     /// Soft discs without a drive, elastic or not.
@@ -17,25 +17,30 @@ pub(crate) enum Class {
     Bodies,
 }
 
-impl Class {
-    pub(crate) const ALL: [Class; 5] =
-        [Class::Driven, Class::Granular, Class::HardDiscs, Class::Bath, Class::Bodies];
+impl SceneClass {
+    pub(crate) const ALL: [SceneClass; 5] = [
+        SceneClass::Driven,
+        SceneClass::Granular,
+        SceneClass::HardDiscs,
+        SceneClass::Bath,
+        SceneClass::Bodies,
+    ];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Class::Driven => "driven granular",
-            Class::Granular => "other granular",
-            Class::HardDiscs => "hard discs",
-            Class::Bath => "baths",
-            Class::Bodies => "bodies",
+            SceneClass::Driven => "driven granular",
+            SceneClass::Granular => "other granular",
+            SceneClass::HardDiscs => "hard discs",
+            SceneClass::Bath => "baths",
+            SceneClass::Bodies => "bodies",
         }
     }
 }
 
 /// A scene, a quantity and the target errors, each of which is a plan.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked {
-    pub(crate) class: Class,
+pub(crate) struct PlanCase {
+    pub(crate) class: SceneClass,
     /// Name of the preset, or of a scene with its text.
     preset: &'static str,
     text: Option<&'static str>,
@@ -49,43 +54,43 @@ pub(crate) struct Asked {
     pub(crate) is_patient: bool,
 }
 
-impl Asked {
+impl PlanCase {
     /// Loads the scene.
     ///
     /// # Errors
     /// [`StudyError`] if it is invalid.
-    pub(crate) fn load(&self) -> Result<Case, StudyError> {
+    pub(crate) fn load(&self) -> Result<StudyCase, StudyError> {
         let overrides: Vec<String> = self.overrides.iter().map(|&text| text.to_owned()).collect();
         Ok(match self.text {
-            Some(text) => Case::parse(self.preset, text, &overrides, METHODS)?,
-            None => Case::load(self.preset, &overrides, METHODS)?,
+            Some(text) => StudyCase::parse(self.preset, text, &overrides, METHODS)?,
+            None => StudyCase::load(self.preset, &overrides, METHODS)?,
         })
     }
 
-    const fn compared(self) -> Asked {
-        Asked { is_compared: true, ..self }
+    const fn compared(self) -> PlanCase {
+        PlanCase { is_compared: true, ..self }
     }
 
-    const fn patient(self) -> Asked {
-        Asked { is_patient: true, ..self }
+    const fn patient(self) -> PlanCase {
+        PlanCase { is_patient: true, ..self }
     }
 
-    const fn with_text(self, text: &'static str) -> Asked {
-        Asked { text: Some(text), ..self }
+    const fn with_text(self, text: &'static str) -> PlanCase {
+        PlanCase { text: Some(text), ..self }
     }
 }
 
 const fn ask(
-    class: Class,
+    class: SceneClass,
     preset: &'static str,
     overrides: &'static [&'static str],
     quantity: &'static str,
     errors: &'static [&'static str],
-) -> Asked {
-    Asked { class, preset, text: None, overrides, quantity, errors, is_compared: false, is_patient: false }
+) -> PlanCase {
+    PlanCase { class, preset, text: None, overrides, quantity, errors, is_compared: false, is_patient: false }
 }
 
-use Class::{Bath, Bodies, Driven, Granular, HardDiscs};
+use SceneClass::{Bath, Bodies, Driven, Granular, HardDiscs};
 
 /// Grains that fall through a funnel, leave at the lower end of the box and return at its upper one: the gallery's hopper with few grains.
 const HOPPER: &str = include_str!("hopper.toml");
@@ -117,7 +122,7 @@ const SHEARED: &[&str] =
 
 /// Sixty plans: packing fractions from 0.01 to 0.7, 2 to 50 000 particles, gas to liquid and cluster, elastic to sticky, flows and shaken beds, all
 /// methods.
-pub(crate) const SCENES: &[Asked] = &[
+pub(crate) const SCENES: &[PlanCase] = &[
     ask(Driven, "pipe-small", THIN_PIPE, "flow", &["10%", "3%", "1%"]).patient(),
     ask(Driven, "pipe-small", CALM_PIPE, "flow", &["10%", "3%", "1%"]).compared(),
     ask(Driven, "hopper", &[], "flow", &["10%", "3%", "1%"]).with_text(HOPPER).patient(),
@@ -236,7 +241,7 @@ pub(crate) const SCENES: &[Asked] = &[
 ];
 
 /// Scenes that take little time.
-pub(crate) const QUICK: &[Asked] = &[
+pub(crate) const QUICK: &[PlanCase] = &[
     ask(Driven, "shaken-box", SHAKEN, "gravitational", &["20%"]).compared(),
     ask(Bath, "langevin-free", &["particles.count=100"], "temperature", &["5%"]),
     ask(Bodies, "kepler", &["run.time=31.4"], "energy_error", &["1e-4"]),
@@ -244,11 +249,11 @@ pub(crate) const QUICK: &[Asked] = &[
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::Target;
+    use super::super::super::PlanTarget;
     use super::*;
     use stripmine_physics::scene::Width;
 
-    fn plans(belongs: impl Fn(&&Asked) -> bool) -> usize {
+    fn plans(belongs: impl Fn(&&PlanCase) -> bool) -> usize {
         SCENES.iter().filter(belongs).map(|asked| asked.errors.len()).sum()
     }
 
@@ -256,7 +261,7 @@ mod tests {
     fn there_are_sixty_plans_of_every_class() {
         assert_eq!(plans(|_| true), 60);
         assert!(plans(|it| it.class == Driven) >= 20);
-        assert!(Class::ALL.iter().all(|class| plans(|it| it.class == *class) >= 6));
+        assert!(SceneClass::ALL.iter().all(|class| plans(|it| it.class == *class) >= 6));
         let driven = SCENES.iter().filter(|it| it.class == Driven);
         let errors: Vec<&str> = driven.flat_map(|it| it.errors).copied().collect();
         assert!(["10%", "3%", "1%"].iter().all(|error| errors.iter().filter(|it| *it == error).count() >= 5));
@@ -271,7 +276,7 @@ mod tests {
             for error in asked.errors {
                 let width = Width::parse(error);
                 assert!(width.is_some(), "{asked:?}: {error}");
-                Target::of(&case, Some(asked.quantity), width).unwrap();
+                PlanTarget::of(&case, Some(asked.quantity), width).unwrap();
             }
         }
     }

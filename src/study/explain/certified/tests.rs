@@ -1,25 +1,25 @@
 //! Judged plans, synthetic and carried out.
 
-use super::grid::Costs;
+use super::grid::RelativeCosts;
 use super::runs::side_by_side;
 use super::*;
-use crate::frame::Scope;
-use crate::study::trial::Known;
+use crate::frame::ExpressionScope;
+use crate::study::trial::MeanEstimate;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::METHODS;
 
-fn plan(class: Class, outcome: Result<Carried, String>) -> Judged {
-    Judged { class, scene: "a".to_owned(), quantity: "flow", asked: "1%", trials: 10.0, outcome }
+fn plan(class: SceneClass, outcome: Result<CarriedPlan, String>) -> JudgedPlan {
+    JudgedPlan { class, scene: "a".to_owned(), quantity: "flow", asked: "1%", trials: 10.0, outcome }
 }
 
-fn carried(runs: &[f64], bar: f64, costs: Option<Costs>) -> Carried {
+fn carried(runs: &[f64], bar: f64, costs: Option<RelativeCosts>) -> CarriedPlan {
     let runs: Vec<Result<f64, String>> = runs.iter().copied().map(Ok).collect();
-    let known = Known { bar, ..Known::exactly(10.0) };
-    Carried {
+    let known = MeanEstimate { bar, ..MeanEstimate::exactly(10.0) };
+    CarriedPlan {
         plan: String::new(),
         error: 1.0,
-        reference: Ok(Reference { known, step: None }),
-        verdict: Some(Verdict::of(&runs, [10.0, bar], 1.0)),
+        reference: Ok(ReferenceMean { known, step: None }),
+        verdict: Some(PlanVerdict::of(&runs, [10.0, bar], 1.0)),
         seconds: [1.0, 1.6],
         costs,
     }
@@ -28,7 +28,7 @@ fn carried(runs: &[f64], bar: f64, costs: Option<Costs>) -> Carried {
 /// By hand: 8 runs of the decided plans, 6 of them within; refused and undecided plans have no runs. Wilson's interval of 6 of 8 is 40.93 to 92.85 %.
 #[test]
 fn runs_and_plans_are_counted_once() {
-    let costs = Costs {
+    let costs = RelativeCosts {
         plan: 1.2,
         choice: Some(1.0),
         baselines: [Some(1.5), None, Some(1.0)],
@@ -36,16 +36,17 @@ fn runs_and_plans_are_counted_once() {
         seconds: 1.0,
     };
     let plans = vec![
-        plan(Class::Driven, Ok(carried(&[10.0, 10.9, 9.1, 11.1], 0.1, Some(costs)))),
-        plan(Class::Driven, Err("it would take an hour".to_owned())),
-        plan(Class::Driven, Ok(carried(&[10.0, 20.0], 0.5, None))),
+        plan(SceneClass::Driven, Ok(carried(&[10.0, 10.9, 9.1, 11.1], 0.1, Some(costs)))),
+        plan(SceneClass::Driven, Err("it would take an hour".to_owned())),
+        plan(SceneClass::Driven, Ok(carried(&[10.0, 20.0], 0.5, None))),
         plan(
-            Class::Bodies,
-            Ok(Carried { seconds: [1.0, 0.7], ..carried(&[10.6, 10.6, 10.6, 12.0], 0.1, None) }),
+            SceneClass::Bodies,
+            Ok(CarriedPlan { seconds: [1.0, 0.7], ..carried(&[10.6, 10.6, 10.6, 12.0], 0.1, None) }),
         ),
     ];
-    let effort = Effort { trials: [10.0, 60.0], limit: 10.0, estimates: 4, reference: 1.0, grid: 1.0 };
-    let scope = Scope::of(made(&Certified { plans, effort }).frames);
+    let effort =
+        PlanTestEffort { trials: [10.0, 60.0], limit: 10.0, estimates: 4, reference: 1.0, grid: 1.0 };
+    let scope = ExpressionScope::of(made(&TestedPlans { plans, effort }).frames);
     let expressions = crate::frame::Expressions::new();
     for (expression, expected) in [
         ("within.at(class='all').plans_asked_for", "4"),
@@ -73,19 +74,19 @@ fn runs_and_plans_are_counted_once() {
 #[test]
 fn runs_and_reference_have_the_bath_temperature() {
     let sets = ["particles.count=200".to_owned()];
-    let case = Case::load("langevin-free", &sets, METHODS).unwrap();
+    let case = StudyCase::load("langevin-free", &sets, METHODS).unwrap();
     let (watch, stop) = (Stopwatch::made(100.0), AtomicBool::new(false));
-    let trial = Trial { watch: &watch, stop: &stop };
+    let trial = TrialControl { watch: &watch, stop: &stop };
     let error = Width::Percent(6.0);
-    let target = Target::of(&case, Some("temperature"), Some(error)).unwrap();
+    let target = PlanTarget::of(&case, Some("temperature"), Some(error)).unwrap();
     let plan = by_trials(&case, &target, 2.0, trial).unwrap();
-    let ensemble = Ensemble { case: &case, target: &target, trial, asking: Asking::from(&plan) };
+    let ensemble = StartEnsemble { case: &case, target: &target, trial, asking: EstimatedMean::from(&plan) };
     let reference = ensemble.reference(error, 20.0).unwrap();
     let [mean, bar] = reference.mean();
     assert!((mean - 1.0).abs() < 1.5 * bar && bar < 0.02, "{mean} ± {bar}");
     assert!((reference.step.unwrap() / case.step().unwrap() - 0.25).abs() < 1e-12);
     let (runs, seconds) = ensemble.estimates(&plan, 12).unwrap();
-    let verdict = Verdict::of(&runs, reference.mean(), 0.06);
+    let verdict = PlanVerdict::of(&runs, reference.mean(), 0.06);
     assert!(verdict.is_decided && verdict.within >= 10 && verdict.broken == 0, "{runs:?}");
     assert!(seconds > 0.0);
     // Each estimate has its own start, and the first is not one of the trials'.

@@ -1,6 +1,6 @@
 //! Comparison of the runs of a plan with the target error, and the cause of each miss.
 
-use crate::statistics::{Mean, Spread};
+use crate::statistics::{MeanWithBar, RunSpread};
 
 /// Largest error bar of a reference, in parts of the target error, that allows a decision.
 const DECIDES: f64 = 1.0 / 3.0;
@@ -9,24 +9,24 @@ const BIASED: f64 = 0.5;
 
 /// Cause of the misses of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cause {
+pub(crate) enum MissCause {
     /// The mean of all runs is biased.
     Bias,
     Statistics,
 }
 
-impl Cause {
+impl MissCause {
     pub(super) fn word(self) -> &'static str {
         match self {
-            Cause::Bias => "bias",
-            Cause::Statistics => "statistics",
+            MissCause::Bias => "bias",
+            MissCause::Statistics => "statistics",
         }
     }
 }
 
 /// Judged runs of a plan.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Verdict {
+pub(super) struct PlanVerdict {
     /// False where the reference is not known well enough.
     pub(crate) is_decided: bool,
     pub runs: usize,
@@ -37,33 +37,33 @@ pub(super) struct Verdict {
     /// Number of runs that failed or have no mean; they are misses.
     pub(crate) broken: usize,
     /// Cause of the other misses.
-    pub(crate) cause: Cause,
+    pub(crate) cause: MissCause,
     /// Mean of the runs less the reference, with the combined error bar, in parts of the target error.
-    pub(crate) bias: Mean,
+    pub(crate) bias: MeanWithBar,
     /// Standard deviation of the runs in parts of the target error; none for fewer than two.
     pub(crate) scatter: Option<f64>,
 }
 
-impl Verdict {
+impl PlanVerdict {
     /// Judges runs by a reference and its error bar, and a target error, all in one unit.
-    pub(super) fn of(runs: &[Result<f64, String>], [reference, bar]: [f64; 2], error: f64) -> Verdict {
+    pub(super) fn of(runs: &[Result<f64, String>], [reference, bar]: [f64; 2], error: f64) -> PlanVerdict {
         let off: Vec<f64> = runs.iter().flatten().map(|value| (value - reference) / error).collect();
-        let mean = Mean::of(&off);
+        let mean = MeanWithBar::of(&off);
         let count = off.len() as f64;
-        Verdict {
+        PlanVerdict {
             is_decided: bar <= DECIDES * error,
             runs: runs.len(),
             errors: off.iter().map(|off| off.abs()).collect(),
             within: off.iter().filter(|off| off.abs() <= 1.0).count(),
             broken: runs.len() - off.len(),
-            cause: if mean.value.abs() > BIASED { Cause::Bias } else { Cause::Statistics },
-            bias: Mean { value: mean.value, bar: mean.bar.hypot(bar / error) },
-            scatter: Spread::of(&off).error.map(|error| error * count.sqrt()),
+            cause: if mean.value.abs() > BIASED { MissCause::Bias } else { MissCause::Statistics },
+            bias: MeanWithBar { value: mean.value, bar: mean.bar.hypot(bar / error) },
+            scatter: RunSpread::of(&off).error.map(|error| error * count.sqrt()),
         }
     }
 
     /// Number of runs outside the error, for a cause.
-    pub(crate) fn missed_by(&self, cause: Cause) -> usize {
+    pub(crate) fn missed_by(&self, cause: MissCause) -> usize {
         if cause == self.cause { self.runs - self.broken - self.within } else { 0 }
     }
 }
@@ -74,11 +74,11 @@ mod tests {
 
     /// By hand, for a reference of 10 and an error of 2: runs, error bar of the reference, and the number within, missed by bias, missed by
     /// statistics, failed; none where nothing is decided.
-    type Case = (&'static [f64], usize, f64, Option<[usize; 4]>);
+    type VerdictCase = (&'static [f64], usize, f64, Option<[usize; 4]>);
 
     #[test]
     fn misses_have_a_cause() {
-        let cases: [Case; 7] = [
+        let cases: [VerdictCase; 7] = [
             (&[10.0, 11.9, 8.1, 12.0], 0, 0.5, Some([4, 0, 0, 0])),
             // The bias is 1.25, more than half of the error.
             (&[12.5, 11.0, 10.5, 11.0], 0, 0.5, Some([3, 1, 0, 0])),
@@ -92,8 +92,9 @@ mod tests {
         for (values, broken, bar, expected) in cases {
             let broken = (0..broken).map(|_| Err("broke".to_owned()));
             let runs: Vec<Result<f64, String>> = values.iter().copied().map(Ok).chain(broken).collect();
-            let verdict = Verdict::of(&runs, [10.0, bar], 2.0);
-            let [bias, statistics] = [Cause::Bias, Cause::Statistics].map(|cause| verdict.missed_by(cause));
+            let verdict = PlanVerdict::of(&runs, [10.0, bar], 2.0);
+            let [bias, statistics] =
+                [MissCause::Bias, MissCause::Statistics].map(|cause| verdict.missed_by(cause));
             let counts = [verdict.within, bias, statistics, verdict.broken];
             assert_eq!(verdict.is_decided.then_some(counts), expected, "{values:?}, {bar}");
             assert_eq!(verdict.runs, runs.len());
@@ -104,10 +105,10 @@ mod tests {
     /// halves of one.
     #[test]
     fn bias_and_scatter_are_parts_of_the_error() {
-        let verdict = Verdict::of(&[Ok(12.0), Ok(14.0)], [10.0, 0.4], 2.0);
+        let verdict = PlanVerdict::of(&[Ok(12.0), Ok(14.0)], [10.0, 0.4], 2.0);
         assert_eq!(verdict.bias.value, 1.5);
         assert!((verdict.bias.bar - f64::hypot(0.5 * 12.706_204_7, 0.2)).abs() < 1e-6, "{:?}", verdict.bias);
         assert!((verdict.scatter.unwrap() - 0.5f64.sqrt()).abs() < 1e-12);
-        assert_eq!(Verdict::of(&[Ok(12.0)], [10.0, 0.4], 2.0).scatter, None);
+        assert_eq!(PlanVerdict::of(&[Ok(12.0)], [10.0, 0.4], 2.0).scatter, None);
     }
 }

@@ -14,22 +14,22 @@ pub struct CheckpointError {
     /// First wrong byte, from 0, if known.
     pub offset: Option<u64>,
     /// Fault of the file.
-    pub fault: Fault,
+    pub fault: CheckpointFault,
     /// Older checkpoint beside it.
-    pub kept: Kept,
+    pub kept: OlderCheckpoint,
 }
 
 impl CheckpointError {
     /// True if the content is at fault, not the system.
     pub fn is_corrupt(&self) -> bool {
-        !matches!(self.fault, Fault::Io(_))
+        !matches!(self.fault, CheckpointFault::Io(_))
     }
 }
 
 /// Fault of a checkpoint.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum Fault {
+pub enum CheckpointFault {
     /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
@@ -87,7 +87,7 @@ pub enum Fault {
 
 /// Older checkpoint beside the newest.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Kept {
+pub enum OlderCheckpoint {
     /// There is no older checkpoint.
     Nothing,
     /// A valid file.
@@ -112,10 +112,12 @@ fn length(bytes: Option<u64>) -> String {
     bytes.map_or_else(|| format!("at least {}", super::HEADER), |bytes| bytes.to_string())
 }
 
-fn advice(file: &Path, kept: &Kept) -> String {
+fn advice(file: &Path, kept: &OlderCheckpoint) -> String {
     match kept {
-        Kept::Nothing => "\n  help: no older checkpoint is kept beside it; start the run again".to_owned(),
-        Kept::Whole { file: older, step } => format!(
+        OlderCheckpoint::Nothing => {
+            "\n  help: no older checkpoint is kept beside it; start the run again".to_owned()
+        }
+        OlderCheckpoint::Whole { file: older, step } => format!(
             "\n  kept: the older checkpoint, {},{} is valid\
              \n  help: to resume from it, rename it to {}",
             quoted::path(older),
@@ -123,7 +125,7 @@ fn advice(file: &Path, kept: &Kept) -> String {
             if *step > 0 { format!(" of step {step},") } else { String::new() },
             quoted::path(file)
         ),
-        Kept::Unusable { file: older } => format!(
+        OlderCheckpoint::Unusable { file: older } => format!(
             "\n  kept: the older checkpoint, {}, but it cannot be used either\n  help: start the run again",
             quoted::path(older)
         ),

@@ -1,6 +1,6 @@
 //! Checkpoints in a folder: replaced atomically, with the previous one kept.
 
-use super::error::{CheckpointError, Fault, Kept};
+use super::error::{CheckpointError, CheckpointFault, OlderCheckpoint};
 use super::{Checkpoint, WriteError, reading};
 use crate::io::replace::{folder_of, remove_if_there, sync_folder, temporary, written_beside};
 use crate::io::{FileError, regular_file};
@@ -14,7 +14,7 @@ pub const NAME: &str = "run.checkpoint";
 
 /// Newest checkpoint of a folder.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Latest {
+pub struct LatestCheckpoint {
     /// Path of the file; the older one if the newest is missing.
     pub file: PathBuf,
     /// Content of the file.
@@ -33,12 +33,13 @@ pub fn previous(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// If it is corrupt or cannot be read; the error names the checkpoint that is left.
-pub fn read_latest(folder: &Path) -> Result<Option<Latest>, CheckpointError> {
+pub fn read_latest(folder: &Path) -> Result<Option<LatestCheckpoint>, CheckpointError> {
     let newest = folder.join(NAME);
     for file in [previous(&newest), newest.clone()].into_iter().rev() {
         match Checkpoint::read(&file) {
-            Ok(checkpoint) => return Ok(Some(Latest { file, checkpoint })),
-            Err(CheckpointError { fault: Fault::Io(cause), .. }) if cause.kind() == ErrorKind::NotFound => {}
+            Ok(checkpoint) => return Ok(Some(LatestCheckpoint { file, checkpoint })),
+            Err(CheckpointError { fault: CheckpointFault::Io(cause), .. })
+                if cause.kind() == ErrorKind::NotFound => {}
             Err(error) => return Err(error),
         }
     }
@@ -50,7 +51,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// The fault, and its byte offset if known.
-    pub fn decode(bytes: &[u8]) -> Result<Checkpoint, (Option<u64>, Fault)> {
+    pub fn decode(bytes: &[u8]) -> Result<Checkpoint, (Option<u64>, CheckpointFault)> {
         reading::decode(bytes, bytes.len() as u64)
     }
 
@@ -64,9 +65,11 @@ impl Checkpoint {
         read_one(path).map_err(|(offset, fault)| {
             let older = previous(path);
             let kept = match read_one(&older) {
-                Ok(Checkpoint { step, .. }) => Kept::Whole { file: older, step },
-                Err((_, Fault::Io(cause))) if cause.kind() == ErrorKind::NotFound => Kept::Nothing,
-                Err(_) => Kept::Unusable { file: older },
+                Ok(Checkpoint { step, .. }) => OlderCheckpoint::Whole { file: older, step },
+                Err((_, CheckpointFault::Io(cause))) if cause.kind() == ErrorKind::NotFound => {
+                    OlderCheckpoint::Nothing
+                }
+                Err(_) => OlderCheckpoint::Unusable { file: older },
             };
             CheckpointError { file: path.to_owned(), offset, fault, kept }
         })
@@ -92,8 +95,8 @@ impl Checkpoint {
     }
 }
 
-fn read_one(path: &Path) -> Result<Checkpoint, reading::Found> {
-    let unreadable = |cause: io::Error| (None, Fault::Io(cause));
+fn read_one(path: &Path) -> Result<Checkpoint, reading::LocatedFault> {
+    let unreadable = |cause: io::Error| (None, CheckpointFault::Io(cause));
     let file = regular_file::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
     reading::decode(BufReader::new(file), length)

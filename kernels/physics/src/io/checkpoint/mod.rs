@@ -18,8 +18,8 @@ mod files;
 mod reading;
 mod writing;
 
-pub use error::{CheckpointError, Fault, Kept};
-pub use files::{Latest, NAME, previous, read_latest};
+pub use error::{CheckpointError, CheckpointFault, OlderCheckpoint};
+pub use files::{LatestCheckpoint, NAME, previous, read_latest};
 pub use writing::WriteError;
 
 use std::collections::BTreeMap;
@@ -44,14 +44,14 @@ pub struct Checkpoint {
     /// Program that wrote it: version, commit, target and the like.
     pub origin: BTreeMap<String, String>,
     /// Counters and sums of the run.
-    pub counters: BTreeMap<String, Counter>,
+    pub counters: BTreeMap<String, CheckpointCounter>,
     /// Values of each particle or cell, by name; lengths may differ.
-    pub columns: Vec<(String, Column)>,
+    pub columns: Vec<(String, CheckpointColumn)>,
 }
 
 /// Counter or sum of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Counter {
+pub enum CheckpointCounter {
     /// Whole number.
     Count(u64),
     /// Floating-point sum, exact to the bit.
@@ -60,7 +60,7 @@ pub enum Counter {
 
 /// Values of one type, exact to the bit.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub enum Column {
+pub enum CheckpointColumn {
     /// Double precision.
     F64(Vec<f64>),
     /// Single precision.
@@ -73,19 +73,19 @@ pub enum Column {
 
 impl Checkpoint {
     /// Column with a name.
-    pub fn column(&self, name: &str) -> Option<&Column> {
+    pub fn column(&self, name: &str) -> Option<&CheckpointColumn> {
         self.columns.iter().find(|(other, _)| other == name).map(|(_, column)| column)
     }
 }
 
-impl Column {
+impl CheckpointColumn {
     /// Number of values.
     pub fn len(&self) -> usize {
         match self {
-            Column::F64(values) => values.len(),
-            Column::F32(values) => values.len(),
-            Column::U32(values) => values.len(),
-            Column::U64(values) => values.len(),
+            CheckpointColumn::F64(values) => values.len(),
+            CheckpointColumn::F32(values) => values.len(),
+            CheckpointColumn::U32(values) => values.len(),
+            CheckpointColumn::U64(values) => values.len(),
         }
     }
 
@@ -97,10 +97,10 @@ impl Column {
     /// Tag of the type in the file, and bytes of a value.
     fn tag_and_width(&self) -> (u8, u64) {
         match self {
-            Column::F64(_) => (0, 8),
-            Column::F32(_) => (1, 4),
-            Column::U32(_) => (2, 4),
-            Column::U64(_) => (3, 8),
+            CheckpointColumn::F64(_) => (0, 8),
+            CheckpointColumn::F32(_) => (1, 4),
+            CheckpointColumn::U32(_) => (2, 4),
+            CheckpointColumn::U64(_) => (3, 8),
         }
     }
 }

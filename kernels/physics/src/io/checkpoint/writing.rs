@@ -1,6 +1,6 @@
 //! Encoding of checkpoints.
 
-use super::{Checkpoint, Column, Counter, HEADER, MAGIC, SECTION_FRAME, VERSION};
+use super::{Checkpoint, CheckpointColumn, CheckpointCounter, HEADER, MAGIC, SECTION_FRAME, VERSION};
 use crate::io::FileError;
 use crc32fast::Hasher;
 use std::collections::BTreeMap;
@@ -18,12 +18,12 @@ pub enum WriteError {
 }
 
 /// Writer that computes a checksum.
-struct Checksummed<W> {
+struct ChecksumWriter<W> {
     out: W,
     checksum: Hasher,
 }
 
-impl<W: Write> Checksummed<W> {
+impl<W: Write> ChecksumWriter<W> {
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.checksum.update(bytes);
         self.out.write_all(bytes)
@@ -40,7 +40,7 @@ impl Checkpoint {
         let state = self.state();
         let columns: u64 =
             self.columns.iter().map(|(name, column)| SECTION_FRAME + column_bytes(name, column)).sum();
-        let mut sink = Checksummed { out, checksum: Hasher::new() };
+        let mut sink = ChecksumWriter { out, checksum: Hasher::new() };
         sink.put(&MAGIC)?;
         sink.put(&VERSION.to_le_bytes())?;
         sink.put(&(self.columns.len() as u32 + 1).to_le_bytes())?;
@@ -61,10 +61,14 @@ impl Checkpoint {
             head.extend((column.len() as u64).to_le_bytes());
             sink.put(&head)?;
             match column {
-                Column::F64(values) => put_all(&mut sink, values, |value| value.to_bits().to_le_bytes())?,
-                Column::F32(values) => put_all(&mut sink, values, |value| value.to_bits().to_le_bytes())?,
-                Column::U32(values) => put_all(&mut sink, values, |value| value.to_le_bytes())?,
-                Column::U64(values) => put_all(&mut sink, values, |value| value.to_le_bytes())?,
+                CheckpointColumn::F64(values) => {
+                    put_all(&mut sink, values, |value| value.to_bits().to_le_bytes())?
+                }
+                CheckpointColumn::F32(values) => {
+                    put_all(&mut sink, values, |value| value.to_bits().to_le_bytes())?
+                }
+                CheckpointColumn::U32(values) => put_all(&mut sink, values, |value| value.to_le_bytes())?,
+                CheckpointColumn::U64(values) => put_all(&mut sink, values, |value| value.to_le_bytes())?,
             }
             sink.put_checksum()?;
         }
@@ -80,8 +84,8 @@ impl Checkpoint {
         push_map(&mut bytes, &self.origin, |bytes, text| push_text(bytes, text));
         push_map(&mut bytes, &self.counters, |bytes, counter| {
             let (tag, bits) = match counter {
-                Counter::Count(count) => (0, *count),
-                Counter::Sum(sum) => (1, sum.to_bits()),
+                CheckpointCounter::Count(count) => (0, *count),
+                CheckpointCounter::Sum(sum) => (1, sum.to_bits()),
             };
             bytes.push(tag);
             bytes.extend(bits.to_le_bytes());
@@ -91,7 +95,7 @@ impl Checkpoint {
 }
 
 /// Size of the payload of `COLM` (bytes).
-fn column_bytes(name: &str, column: &Column) -> u64 {
+fn column_bytes(name: &str, column: &CheckpointColumn) -> u64 {
     8 + name.len() as u64 + 1 + 8 + column.len() as u64 * column.tag_and_width().1
 }
 
@@ -109,7 +113,7 @@ fn push_map<T>(bytes: &mut Vec<u8>, map: &BTreeMap<String, T>, push: impl Fn(&mu
 }
 
 fn put_all<W: Write, T, const WIDTH: usize>(
-    sink: &mut Checksummed<W>,
+    sink: &mut ChecksumWriter<W>,
     values: &[T],
     bytes_of: impl Fn(&T) -> [u8; WIDTH],
 ) -> io::Result<()> {

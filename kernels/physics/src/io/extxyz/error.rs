@@ -1,6 +1,6 @@
 //! Mistakes in extended XYZ files, with their locations.
 
-use super::format::Format;
+use super::format::ForeignFormat;
 use crate::io::trajectory::TrajectoryError;
 use crate::number::counted;
 use crate::quoted::{self, quoted};
@@ -10,7 +10,7 @@ use std::io;
 /// All mistakes found in a file of frames, in the order of their lines.
 #[derive(Debug, thiserror::Error)]
 #[error("{}", listing(self))]
-pub struct ReadError {
+pub struct XyzReadError {
     /// Name of the file.
     pub file: String,
     /// First mistakes; at least one.
@@ -27,13 +27,13 @@ pub struct Mistake {
     /// Column in characters, from 1; none if the whole line is meant.
     pub column: Option<usize>,
     /// Reason of the mistake.
-    pub reason: Reason,
+    pub reason: XyzMistakeKind,
 }
 
 /// Reason of a mistake in an extended XYZ file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum Reason {
+pub enum XyzMistakeKind {
     /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
@@ -109,7 +109,7 @@ pub enum Reason {
         "this is {0}; expected extended XYZ, with columns for positions, velocities, radii and masses: convert it, for \
          example with OVITO (Export File, XYZ)"
     )]
-    Format(Format),
+    Format(ForeignFormat),
     /// A quantity without a column in `Properties`.
     #[error(
         "Properties has no column {0}; add it to the file, for example in OVITO (Compute property, Export File, XYZ) or in ASE \
@@ -198,12 +198,12 @@ fn whole(frames: usize) -> String {
 }
 
 impl Mistake {
-    pub(super) fn in_line(line: usize, reason: Reason) -> Mistake {
+    pub(super) fn in_line(line: usize, reason: XyzMistakeKind) -> Mistake {
         Mistake { line: Some(line), column: None, reason }
     }
 
     /// Mistake at a byte of a line's text.
-    pub(super) fn at(line: usize, text: &str, byte: usize, reason: Reason) -> Mistake {
+    pub(super) fn at(line: usize, text: &str, byte: usize, reason: XyzMistakeKind) -> Mistake {
         let column = text.get(..byte).map(|before| before.chars().count() + 1);
         Mistake { line: Some(line), column, reason }
     }
@@ -213,25 +213,25 @@ impl Mistake {
     }
 }
 
-impl From<Mistake> for Mistakes {
+impl From<Mistake> for XyzMistakeList {
     fn from(mistake: Mistake) -> Self {
-        Mistakes { first: vec![mistake], more: 0 }
+        XyzMistakeList { first: vec![mistake], more: 0 }
     }
 }
 
 /// Collection of mistakes; keeps the first ones and counts the rest.
 #[derive(Debug, Default)]
-pub(super) struct Mistakes {
+pub(super) struct XyzMistakeList {
     first: Vec<Mistake>,
     more: usize,
 }
 
-impl Mistakes {
+impl XyzMistakeList {
     const KEPT: usize = 20;
 
     /// True if a further mistake would be kept; otherwise its location need not be found.
     pub(super) fn has_room(&self) -> bool {
-        self.first.len() < Mistakes::KEPT
+        self.first.len() < XyzMistakeList::KEPT
     }
 
     /// Counts a mistake without keeping it.
@@ -251,23 +251,23 @@ impl Mistakes {
         self.first.is_empty()
     }
 
-    pub(super) fn of_file(self, file: &str) -> ReadError {
-        ReadError { file: file.to_owned(), mistakes: self.first, more: self.more }
+    pub(super) fn of_file(self, file: &str) -> XyzReadError {
+        XyzReadError { file: file.to_owned(), mistakes: self.first, more: self.more }
     }
 }
 
-impl ReadError {
+impl XyzReadError {
     /// Error of the system, if the file could not be read at all.
     pub fn system(&self) -> Option<&io::Error> {
         self.mistakes.iter().find_map(|mistake| match &mistake.reason {
-            Reason::Io(cause) => Some(cause),
+            XyzMistakeKind::Io(cause) => Some(cause),
             _ => None,
         })
     }
 }
 
-impl From<ReadError> for TrajectoryError {
-    fn from(error: ReadError) -> TrajectoryError {
+impl From<XyzReadError> for TrajectoryError {
+    fn from(error: XyzReadError) -> TrajectoryError {
         TrajectoryError {
             line: error.mistakes.first().and_then(|mistake| mistake.line),
             is_of_system: error.system().is_some(),
@@ -287,7 +287,7 @@ impl fmt::Display for Mistake {
     }
 }
 
-fn listing(error: &ReadError) -> String {
+fn listing(error: &XyzReadError) -> String {
     let file = quoted::path(error.file.as_ref());
     let mut lines: Vec<String> = error.mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
     if error.more > 0 {

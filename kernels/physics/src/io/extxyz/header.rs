@@ -1,36 +1,36 @@
 //! Comment line of a frame: `key=value` pairs, and the columns named by `Properties`.
 
-use super::Room;
-use super::error::{Mistake, Mistakes, Reason};
-use super::format::Format;
+use super::FrameContents;
+use super::error::{Mistake, XyzMistakeKind, XyzMistakeList};
+use super::format::ForeignFormat;
 use super::real::number;
-use super::rows::Layout;
+use super::rows::XyzRowLayout;
 
 /// Content of a comment line.
-pub(super) struct Header {
+pub(super) struct CommentHeader {
     pub(super) cell: [f64; 2],
     pub(super) origin: [f64; 2],
     pub(super) periodic: Option<[bool; 2]>,
     pub(super) time: f64,
     pub(super) step: u64,
     pub(super) seed: Option<u64>,
-    pub(super) layout: Layout,
+    pub(super) layout: XyzRowLayout,
 }
 
 /// Key and value, with the byte offset of the key.
-struct Entry {
+struct HeaderEntry {
     key: String,
     value: String,
     byte: usize,
 }
 
-impl Entry {
-    fn wrong(&self, key: &'static str, expected: &'static str) -> Reason {
-        Reason::Value { key, found: self.value.clone(), expected }
+impl HeaderEntry {
+    fn wrong(&self, key: &'static str, expected: &'static str) -> XyzMistakeKind {
+        XyzMistakeKind::Value { key, found: self.value.clone(), expected }
     }
 
     /// Numbers in any of the brackets in use.
-    fn numbers(&self, key: &'static str, expected: &'static str) -> Result<Vec<f64>, Reason> {
+    fn numbers(&self, key: &'static str, expected: &'static str) -> Result<Vec<f64>, XyzMistakeKind> {
         let parsed: Option<Vec<f64>> =
             self.words().map(|word| number(word).filter(|number| number.is_finite())).collect();
         parsed.ok_or_else(|| self.wrong(key, expected))
@@ -42,23 +42,23 @@ impl Entry {
 }
 
 /// Parses a comment line; reports every wrong key.
-pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mistakes> {
-    let mut mistakes = Mistakes::default();
+pub(super) fn parse(text: &str, line: usize, room: FrameContents) -> Result<CommentHeader, XyzMistakeList> {
+    let mut mistakes = XyzMistakeList::default();
     let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
-    if let Some(format) = Format::of_comment(text) {
-        return Err(Mistake::in_line(line, Reason::Format(format)).into());
+    if let Some(format) = ForeignFormat::of_comment(text) {
+        return Err(Mistake::in_line(line, XyzMistakeKind::Format(format)).into());
     }
     // Locating a column takes time in proportion to the line, so it is done only for mistakes that are listed.
-    let mut keep = |entry: &Entry, reason| match mistakes.has_room() {
+    let mut keep = |entry: &HeaderEntry, reason| match mistakes.has_room() {
         true => mistakes.add(Mistake::at(line, text, entry.byte, reason)),
         false => mistakes.count(),
     };
-    let mut known: [Option<&Entry>; KEYS.len()] = [None; KEYS.len()];
+    let mut known: [Option<&HeaderEntry>; KEYS.len()] = [None; KEYS.len()];
     for entry in &entries {
         let Some(key) = KEYS.iter().position(|key| *key == entry.key) else { continue };
         match known[key] {
             None => known[key] = Some(entry),
-            Some(_) => keep(entry, Reason::RepeatedKey(entry.key.clone())),
+            Some(_) => keep(entry, XyzMistakeKind::RepeatedKey(entry.key.clone())),
         }
     }
     let find = |key: &str| known.iter().copied().flatten().find(|entry| entry.key == key);
@@ -66,8 +66,8 @@ pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mista
     let mut missing = Vec::new();
     let mut cell = [0.0; 2];
     match find("lattice") {
-        None if room == Room::Space => cell = [f64::INFINITY; 2],
-        None => missing.push(Reason::MissingKey { key: "Lattice", expected: LATTICE }),
+        None if room == FrameContents::Space => cell = [f64::INFINITY; 2],
+        None => missing.push(XyzMistakeKind::MissingKey { key: "Lattice", expected: LATTICE }),
         Some(entry) => match lattice(entry) {
             Ok(sides) => cell = sides,
             Err(reason) => keep(entry, reason),
@@ -75,8 +75,8 @@ pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mista
     }
     let mut layout = None;
     match find("properties") {
-        None => missing.push(Reason::MissingKey { key: "Properties", expected: PROPERTIES }),
-        Some(entry) => match Layout::parse(&entry.value) {
+        None => missing.push(XyzMistakeKind::MissingKey { key: "Properties", expected: PROPERTIES }),
+        Some(entry) => match XyzRowLayout::parse(&entry.value) {
             Ok(found) => layout = Some(found),
             Err(reasons) => reasons.into_iter().for_each(|reason| keep(entry, reason)),
         },
@@ -115,7 +115,7 @@ pub(super) fn parse(text: &str, line: usize, room: Room) -> Result<Header, Mista
     missing.into_iter().for_each(|reason| mistakes.add(Mistake::in_line(line, reason)));
     match layout {
         Some(layout) if mistakes.is_empty() => {
-            Ok(Header { cell, origin, periodic, time, step, seed, layout })
+            Ok(CommentHeader { cell, origin, periodic, time, step, seed, layout })
         }
         _ => Err(mistakes),
     }
@@ -131,7 +131,7 @@ const BOUNDARIES: &str = "\"T F F\" (or \"T F\"), T where the box is periodic al
 const ROUNDING: f64 = 1e-12;
 
 /// Sides of a rectangular box.
-fn lattice(entry: &Entry) -> Result<[f64; 2], Reason> {
+fn lattice(entry: &HeaderEntry) -> Result<[f64; 2], XyzMistakeKind> {
     let numbers = entry.numbers("Lattice", LATTICE)?;
     let [x, _, _, _, y, _, _, _, depth] = numbers[..] else { return Err(entry.wrong("Lattice", LATTICE)) };
     if !(x > 0.0 && y > 0.0) {
@@ -141,11 +141,11 @@ fn lattice(entry: &Entry) -> Result<[f64; 2], Reason> {
     let rounding = ROUNDING * x.min(y).min(if depth > 0.0 { depth } else { f64::INFINITY });
     match off_diagonal.into_iter().find(|&at| numbers[at].abs() > rounding) {
         None => Ok([x, y]),
-        Some(at) => Err(Reason::Tilt { at: at + 1, value: numbers[at] }),
+        Some(at) => Err(XyzMistakeKind::Tilt { at: at + 1, value: numbers[at] }),
     }
 }
 
-fn boundaries(entry: &Entry) -> Option<[bool; 2]> {
+fn boundaries(entry: &HeaderEntry) -> Option<[bool; 2]> {
     let axes: Option<Vec<bool>> = entry
         .words()
         .map(|word| match word.to_ascii_lowercase().as_str() {
@@ -161,8 +161,8 @@ fn boundaries(entry: &Entry) -> Option<[bool; 2]> {
 }
 
 /// Splits a comment line into entries with keys in lower case; a key without a value has an empty one.
-fn entries(text: &str) -> Result<Vec<Entry>, (usize, Reason)> {
-    let mut rest = Cursor { text, byte: 0 };
+fn entries(text: &str) -> Result<Vec<HeaderEntry>, (usize, XyzMistakeKind)> {
+    let mut rest = CommentCursor { text, byte: 0 };
     let mut entries = Vec::new();
     loop {
         rest.skip_blanks();
@@ -179,16 +179,16 @@ fn entries(text: &str) -> Result<Vec<Entry>, (usize, Reason)> {
         } else {
             String::new()
         };
-        entries.push(Entry { key, value, byte });
+        entries.push(HeaderEntry { key, value, byte });
     }
 }
 
-struct Cursor<'a> {
+struct CommentCursor<'a> {
     text: &'a str,
     byte: usize,
 }
 
-impl Cursor<'_> {
+impl CommentCursor<'_> {
     fn peek(&self) -> Option<char> {
         self.text[self.byte..].chars().next()
     }
@@ -206,7 +206,7 @@ impl Cursor<'_> {
     }
 
     /// Reads a word in quotes or brackets, which are removed, or up to the next blank; a key also ends at `=`.
-    fn word(&mut self, key: bool) -> Result<String, (usize, Reason)> {
+    fn word(&mut self, key: bool) -> Result<String, (usize, XyzMistakeKind)> {
         let start = self.byte;
         let mut word = String::new();
         let closing = match self.peek() {
@@ -240,6 +240,6 @@ impl Cursor<'_> {
                 }
             }
         }
-        Err((start, Reason::Unclosed(open)))
+        Err((start, XyzMistakeKind::Unclosed(open)))
     }
 }

@@ -22,9 +22,9 @@ mod real;
 mod rows;
 mod writer;
 
-pub use error::{Mistake, ReadError, Reason};
-pub use format::Format;
-pub use reader::{Frames, Which, read};
+pub use error::{Mistake, XyzMistakeKind, XyzReadError};
+pub use format::ForeignFormat;
+pub use reader::{FrameChoice, XyzFrames, read};
 pub(crate) use writer::FORMAT;
 pub use writer::write;
 
@@ -41,7 +41,7 @@ pub(super) const DEPTH: [f64; 2] = [-0.5, 0.5];
 
 /// Contents allowed in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Room {
+pub(crate) enum FrameContents {
     /// Planar discs in a box, as scenes start from.
     Plane,
     /// Everything that runs write: also bodies in space, and frames without a box, whose sides are infinite.
@@ -50,7 +50,7 @@ pub(crate) enum Room {
 
 /// Discs in their box at one time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
+pub struct ParticleFrame {
     /// Discs of the frame.
     pub particles: Particles,
     /// Sides of the box (length).

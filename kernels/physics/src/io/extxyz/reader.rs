@@ -1,8 +1,8 @@
 //! Reading of frames in sequence.
 
-use super::error::{Mistake, Mistakes, ReadError, Reason};
-use super::format::Format;
-use super::{Frame, Room, header};
+use super::error::{Mistake, XyzMistakeKind, XyzMistakeList, XyzReadError};
+use super::format::ForeignFormat;
+use super::{FrameContents, ParticleFrame, header};
 use crate::io::regular_file;
 use crate::particles::Particles;
 use std::collections::HashMap;
@@ -15,7 +15,7 @@ const LONGEST_LINE: usize = 1 << 20;
 
 /// Selection of a frame in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Which {
+pub enum FrameChoice {
     /// First frame; the text after it is only checked for another frame's count.
     First,
     /// Last frame; earlier ones are skipped without parsing.
@@ -27,57 +27,65 @@ pub enum Which {
 ///
 /// # Errors
 /// All mistakes of the frame, with their lines, or the first line at which frames cannot be separated.
-pub fn read(path: impl AsRef<Path>, which: Which) -> Result<Frame, ReadError> {
-    let mut frames = Frames::open(path)?;
+pub fn read(path: impl AsRef<Path>, which: FrameChoice) -> Result<ParticleFrame, XyzReadError> {
+    let mut frames = XyzFrames::open(path)?;
     match which {
-        Which::First => {
+        FrameChoice::First => {
             let frame = frames.parsed_next().map_err(|mistakes| mistakes.of_file(&frames.name))?;
-            frames.raw.check_boundary().map_err(|mistake| Mistakes::from(mistake).of_file(&frames.name))?;
+            frames
+                .raw
+                .check_boundary()
+                .map_err(|mistake| XyzMistakeList::from(mistake).of_file(&frames.name))?;
             frame
         }
-        Which::Last => frames.last_frame().map_err(|mistakes| mistakes.of_file(&frames.name))?,
+        FrameChoice::Last => frames.last_frame().map_err(|mistakes| mistakes.of_file(&frames.name))?,
     }
-    .ok_or_else(|| Mistakes::from(Mistake::in_line(1, Reason::Empty)).of_file(&frames.name))
+    .ok_or_else(|| XyzMistakeList::from(Mistake::in_line(1, XyzMistakeKind::Empty)).of_file(&frames.name))
 }
 
 /// Iterator over the frames of a text; ends after the first wrong one.
-pub struct Frames<R> {
+pub struct XyzFrames<R> {
     name: String,
     raw: RawFrames<R>,
-    room: Room,
+    room: FrameContents,
     failed: bool,
 }
 
-impl Frames<BufReader<File>> {
+impl XyzFrames<BufReader<File>> {
     /// Opens a file.
     ///
     /// # Errors
     /// If the system refuses to read it.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, XyzReadError> {
         let name = path.as_ref().display().to_string();
         match regular_file::open(path.as_ref()) {
-            Ok(file) => Ok(Frames::new(BufReader::new(file), name)),
-            Err(cause) => Err(Mistakes::from(Mistake::reading(cause)).of_file(&name)),
+            Ok(file) => Ok(XyzFrames::new(BufReader::new(file), name)),
+            Err(cause) => Err(XyzMistakeList::from(Mistake::reading(cause)).of_file(&name)),
         }
     }
 }
 
-impl<R: BufRead> Frames<R> {
+impl<R: BufRead> XyzFrames<R> {
     /// Reads frames from a reader; `name` is used in errors.
     pub fn new(reader: R, name: impl Into<String>) -> Self {
-        Frames { name: name.into(), raw: RawFrames::new(reader), room: Room::Plane, failed: false }
+        XyzFrames {
+            name: name.into(),
+            raw: RawFrames::new(reader),
+            room: FrameContents::Plane,
+            failed: false,
+        }
     }
 
     /// Accepts everything that runs write: bodies in space and frames without a box.
     pub fn in_space(self) -> Self {
-        Frames { room: Room::Space, ..self }
+        XyzFrames { room: FrameContents::Space, ..self }
     }
 
-    fn parsed_next(&mut self) -> Result<Option<Frame>, Mistakes> {
+    fn parsed_next(&mut self) -> Result<Option<ParticleFrame>, XyzMistakeList> {
         self.raw.next_frame()?.map(|raw| parse(&raw, self.room)).transpose()
     }
 
-    fn last_frame(&mut self) -> Result<Option<Frame>, Mistakes> {
+    fn last_frame(&mut self) -> Result<Option<ParticleFrame>, XyzMistakeList> {
         let mut last = None;
         while let Some(raw) = self.raw.next_frame()? {
             last = Some(raw);
@@ -86,8 +94,8 @@ impl<R: BufRead> Frames<R> {
     }
 }
 
-impl<R: BufRead> Iterator for Frames<R> {
-    type Item = Result<Frame, ReadError>;
+impl<R: BufRead> Iterator for XyzFrames<R> {
+    type Item = Result<ParticleFrame, XyzReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.failed {
@@ -110,7 +118,7 @@ pub(super) struct RawFrame {
 
 impl RawFrame {
     /// Parses the comment line.
-    pub(super) fn header(&self, room: Room) -> Result<header::Header, Mistakes> {
+    pub(super) fn header(&self, room: FrameContents) -> Result<header::CommentHeader, XyzMistakeList> {
         let comment = self.text.split(|&byte| byte == b'\n').next().unwrap_or_default();
         header::parse(utf8(comment, self.line + 1)?, self.line + 1, room)
     }
@@ -142,7 +150,7 @@ impl<R: BufRead> RawFrames<R> {
         for row in 0..=count {
             if self.append_line(&mut text)? == 0 {
                 let found = row.saturating_sub(1);
-                let reason = Reason::Truncated { found, promised: count, line, frames: self.frames };
+                let reason = XyzMistakeKind::Truncated { found, promised: count, line, frames: self.frames };
                 return Err(Mistake::in_line(self.line, reason));
             }
         }
@@ -164,8 +172,8 @@ impl<R: BufRead> RawFrames<R> {
     fn begin(&mut self) -> Result<(), Mistake> {
         const MARK: &[u8] = b"\xef\xbb\xbf";
         let first = self.reader.fill_buf().map_err(Mistake::reading)?;
-        if let Some(format) = Format::of(first) {
-            return Err(Mistake { line: None, column: None, reason: Reason::Format(format) });
+        if let Some(format) = ForeignFormat::of(first) {
+            return Err(Mistake { line: None, column: None, reason: XyzMistakeKind::Format(format) });
         }
         if first.starts_with(MARK) {
             self.reader.consume(MARK.len());
@@ -202,7 +210,7 @@ impl<R: BufRead> RawFrames<R> {
         let text = utf8(line, self.line)?.trim();
         text.parse().map(Some).map_err(|_| {
             let found = text.chars().take(60).collect();
-            Mistake::in_line(self.line, Reason::Count { found, previous: self.previous })
+            Mistake::in_line(self.line, XyzMistakeKind::Count { found, previous: self.previous })
         })
     }
 
@@ -211,7 +219,7 @@ impl<R: BufRead> RawFrames<R> {
         let bytes = line.read_until(b'\n', text).map_err(Mistake::reading)?;
         self.line += usize::from(bytes > 0);
         if bytes > LONGEST_LINE {
-            return Err(Mistake::in_line(self.line, Reason::LongLine { most: LONGEST_LINE }));
+            return Err(Mistake::in_line(self.line, XyzMistakeKind::LongLine { most: LONGEST_LINE }));
         }
         Ok(bytes)
     }
@@ -220,13 +228,13 @@ impl<R: BufRead> RawFrames<R> {
 fn utf8(bytes: &[u8], line: usize) -> Result<&str, Mistake> {
     std::str::from_utf8(bytes).map_err(|error| {
         let before = String::from_utf8_lossy(&bytes[..error.valid_up_to()]).chars().count();
-        Mistake { line: Some(line), column: Some(before + 1), reason: Reason::NotText }
+        Mistake { line: Some(line), column: Some(before + 1), reason: XyzMistakeKind::NotText }
     })
 }
 
-fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
+fn parse(raw: &RawFrame, room: FrameContents) -> Result<ParticleFrame, XyzMistakeList> {
     let header = raw.header(room)?;
-    let mut mistakes = Mistakes::default();
+    let mut mistakes = XyzMistakeList::default();
     let mut discs = Vec::new();
     let mut lines_of_ids = HashMap::new();
     let mut fields = Vec::new();
@@ -240,7 +248,8 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
                 }
                 let first = *lines_of_ids.entry(disc.id).or_insert(line);
                 if first != line {
-                    mistakes.add(Mistake::in_line(line, Reason::RepeatedId { id: disc.id, line: first }));
+                    mistakes
+                        .add(Mistake::in_line(line, XyzMistakeKind::RepeatedId { id: disc.id, line: first }));
                 }
                 discs.push(disc);
             }
@@ -250,13 +259,22 @@ fn parse(raw: &RawFrame, room: Room) -> Result<Frame, Mistakes> {
     let has_raised_ids = lines_of_ids.contains_key(&0);
     if has_raised_ids {
         if let Some(&line) = lines_of_ids.get(&u32::MAX) {
-            mistakes.add(Mistake::in_line(line, Reason::LastId));
+            mistakes.add(Mistake::in_line(line, XyzMistakeKind::LastId));
         }
         discs.iter_mut().for_each(|disc| disc.id = disc.id.saturating_add(1));
     }
     if !mistakes.is_empty() {
         return Err(mistakes);
     }
-    let header::Header { cell, origin, periodic, time, step, seed, .. } = header;
-    Ok(Frame { particles: Particles::new(discs), cell, origin, periodic, time, step, seed, has_raised_ids })
+    let header::CommentHeader { cell, origin, periodic, time, step, seed, .. } = header;
+    Ok(ParticleFrame {
+        particles: Particles::new(discs),
+        cell,
+        origin,
+        periodic,
+        time,
+        step,
+        seed,
+        has_raised_ids,
+    })
 }

@@ -1,23 +1,23 @@
 //! Rows of a frame: the layout given by `Properties`, and discs from their fields.
 
-use super::Room;
-use super::error::{Mistake, Reason};
+use super::FrameContents;
+use super::error::{Mistake, XyzMistakeKind};
 use super::real::number;
-use crate::particles::{Kind, Particle};
+use crate::particles::{Particle, ParticleKind};
 
 /// Column that a frame may have.
-struct Column {
+struct XyzColumn {
     name: &'static str,
     /// Accepted shapes; the first one is written by this program.
     shapes: &'static [&'static str],
 }
 
-const fn column(name: &'static str, shapes: &'static [&'static str]) -> Column {
-    Column { name, shapes }
+const fn column(name: &'static str, shapes: &'static [&'static str]) -> XyzColumn {
+    XyzColumn { name, shapes }
 }
 
 /// Planar programs write vectors with two columns and the angular velocity with one. ASE stores velocities as momenta and masses.
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [XyzColumn; 9] = [
     column("species", &["species:S:1"]),
     column("pos", &["pos:R:3", "pos:R:2"]),
     column("id", &["id:I:1"]),
@@ -49,16 +49,16 @@ const REQUIRED: [(&[usize], &str); 4] = [
 ];
 
 /// First field and width of each column, and the number of fields of a row.
-pub(super) struct Layout {
+pub(super) struct XyzRowLayout {
     columns: [Option<(usize, usize)>; COLUMNS.len()],
     fields: usize,
 }
 
-impl Layout {
+impl XyzRowLayout {
     /// Parses `name:type:width:…`; unknown columns are skipped.
-    pub(super) fn parse(text: &str) -> Result<Layout, Vec<Reason>> {
+    pub(super) fn parse(text: &str) -> Result<XyzRowLayout, Vec<XyzMistakeKind>> {
         let parts: Vec<&str> = text.trim().split(':').collect();
-        let mut layout = Layout { columns: [None; COLUMNS.len()], fields: 0 };
+        let mut layout = XyzRowLayout { columns: [None; COLUMNS.len()], fields: 0 };
         let mut reasons = Vec::new();
         for part in parts.chunks(3) {
             let found = part.join(":");
@@ -71,12 +71,12 @@ impl Layout {
             let end = width.filter(|&width| width > 0).and_then(|width| layout.fields.checked_add(width));
             let fits = known.is_none_or(|i| COLUMNS[i].shapes.contains(&found.as_str()));
             let (Some(end), true) = (end, fits) else {
-                reasons.push(Reason::ColumnShape { found, expected });
+                reasons.push(XyzMistakeKind::ColumnShape { found, expected });
                 continue;
             };
             if let Some(i) = known {
                 if layout.columns[i].is_some() {
-                    reasons.push(Reason::RepeatedColumn(part[0].to_owned()));
+                    reasons.push(XyzMistakeKind::RepeatedColumn(part[0].to_owned()));
                 }
                 layout.columns[i] = Some((layout.fields, end - layout.fields));
             }
@@ -86,7 +86,7 @@ impl Layout {
             // A column of the wrong shape counts as present.
             let is_named = |&column: &usize| parts.chunks(3).any(|part| part[0] == COLUMNS[column].name);
             if !columns.iter().any(is_named) {
-                reasons.push(Reason::MissingColumn(expected));
+                reasons.push(XyzMistakeKind::MissingColumn(expected));
             }
         }
         if reasons.is_empty() { Ok(layout) } else { Err(reasons) }
@@ -106,22 +106,22 @@ impl Layout {
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
-        (line, room): (usize, Room),
+        (line, room): (usize, FrameContents),
         fields: &mut Vec<&'a str>,
     ) -> Result<Particle, Mistake> {
         fields.clear();
         fields.extend(text.split_ascii_whitespace());
         if fields.len() != self.fields {
-            let reason = Reason::Fields { found: fields.len(), expected: self.fields };
+            let reason = XyzMistakeKind::Fields { found: fields.len(), expected: self.fields };
             return Err(Mistake::in_line(line, reason));
         }
-        let row = Row { layout: self, text, line, fields };
-        let kind = if row.fields(SPECIES) == ["W"] { Kind::Wall } else { Kind::Grain };
+        let row = XyzRow { layout: self, text, line, fields };
+        let kind = if row.fields(SPECIES) == ["W"] { ParticleKind::Wall } else { ParticleKind::Grain };
         let position = row.vector(POS)?;
         let id = row.id()?;
         let moving = self.either(VELO, MOMENTA);
         let mut velocity = row.vector(moving)?;
-        if room == Room::Plane {
+        if room == FrameContents::Plane {
             row.zeros(POS, &[(2, position[2])])?;
             row.zeros(moving, &[(2, velocity[2])])?;
         }
@@ -136,21 +136,21 @@ impl Layout {
 }
 
 /// Row split into its fields, as many as the layout requires.
-struct Row<'a> {
-    layout: &'a Layout,
+struct XyzRow<'a> {
+    layout: &'a XyzRowLayout,
     text: &'a str,
     line: usize,
     fields: &'a [&'a str],
 }
 
-impl Row<'_> {
+impl XyzRow<'_> {
     /// Fields of a column; none if the frame lacks it.
     fn fields(&self, column: usize) -> &[&str] {
         let Some((first, width)) = self.layout.columns[column] else { return &[] };
         self.fields.get(first..first + width).unwrap_or(&[])
     }
 
-    fn wrong(&self, field: &str, reason: Reason) -> Mistake {
+    fn wrong(&self, field: &str, reason: XyzMistakeKind) -> Mistake {
         let byte = (field.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
         Mistake::at(self.line, self.text, byte, reason)
     }
@@ -162,9 +162,9 @@ impl Row<'_> {
         for (value, field) in numbers.iter_mut().zip(self.fields(column)) {
             let found = || (*field).to_owned();
             let parsed = number(field)
-                .ok_or_else(|| self.wrong(field, Reason::Number { column: name, found: found() }))?;
+                .ok_or_else(|| self.wrong(field, XyzMistakeKind::Number { column: name, found: found() }))?;
             if !parsed.is_finite() {
-                return Err(self.wrong(field, Reason::NotFinite { column: name, found: found() }));
+                return Err(self.wrong(field, XyzMistakeKind::NotFinite { column: name, found: found() }));
             }
             *value = parsed;
         }
@@ -176,7 +176,7 @@ impl Row<'_> {
         if value > 0.0 {
             return Ok(value);
         }
-        let reason = Reason::NotPositive { column: COLUMNS[column].name, value };
+        let reason = XyzMistakeKind::NotPositive { column: COLUMNS[column].name, value };
         Err(self.wrong(self.fields(column)[0], reason))
     }
 
@@ -187,7 +187,7 @@ impl Row<'_> {
             None => Ok(velocity),
             Some((_, field)) => {
                 let found = format!("{field} over the mass {mass:?}");
-                Err(self.wrong(field, Reason::NotFinite { column: COLUMNS[MOMENTA].name, found }))
+                Err(self.wrong(field, XyzMistakeKind::NotFinite { column: COLUMNS[MOMENTA].name, found }))
             }
         }
     }
@@ -209,7 +209,7 @@ impl Row<'_> {
             None => Ok(()),
             Some(&(i, value)) => {
                 let component = ['x', 'y', 'z'][i];
-                let reason = Reason::OutOfPlane { column: COLUMNS[column].name, component, value };
+                let reason = XyzMistakeKind::OutOfPlane { column: COLUMNS[column].name, component, value };
                 Err(self.wrong(self.fields(column)[i], reason))
             }
         }
@@ -217,6 +217,6 @@ impl Row<'_> {
 
     fn id(&self) -> Result<u32, Mistake> {
         let Some(field) = self.fields(ID).first() else { return Ok(0) };
-        field.parse().map_err(|_| self.wrong(field, Reason::Id((*field).to_owned())))
+        field.parse().map_err(|_| self.wrong(field, XyzMistakeKind::Id((*field).to_owned())))
     }
 }

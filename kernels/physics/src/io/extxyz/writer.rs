@@ -1,13 +1,13 @@
 //! Writing of frames.
 
-use super::{DEPTH, Frame, Frames, OF_ASE, PROPERTIES};
+use super::{DEPTH, OF_ASE, PROPERTIES, ParticleFrame, XyzFrames};
 use crate::io::growing_file::GrowingFile;
 use crate::io::opened::SinkKind;
 use crate::io::output_format::{FrameWriting, OutputFormat};
 use crate::io::run_moment::RunMoment;
 use crate::io::sink::{TextFormat, TextSink};
 use crate::io::trajectory::{FrameReading, reader};
-use crate::particles::Kind;
+use crate::particles::ParticleKind;
 use std::io::{self, Write};
 use std::sync::Arc;
 
@@ -17,20 +17,20 @@ pub(crate) const FORMAT: OutputFormat = OutputFormat {
     is_default: true,
     needs_box: false,
     file: "trajectory.xyz",
-    writing: FrameWriting::Growing(SinkKind::of::<TextSink<Snapshots>>()),
-    reading: FrameReading::Opens(|path| Ok(reader(Frames::open(path)?.in_space()))),
+    writing: FrameWriting::Growing(SinkKind::of::<TextSink<XyzSnapshots>>()),
+    reading: FrameReading::Opens(|path| Ok(reader(XyzFrames::open(path)?.in_space()))),
 };
 
-struct Snapshots;
+struct XyzSnapshots;
 
-impl TextFormat for Snapshots {
-    type Entry = Arc<Frame>;
+impl TextFormat for XyzSnapshots {
+    type Entry = Arc<ParticleFrame>;
 
-    fn entry(moment: &RunMoment<'_>) -> Option<Arc<Frame>> {
+    fn entry(moment: &RunMoment<'_>) -> Option<Arc<ParticleFrame>> {
         Some(moment.frame().clone())
     }
 
-    fn write(frame: Arc<Frame>, out: &mut GrowingFile) -> io::Result<()> {
+    fn write(frame: Arc<ParticleFrame>, out: &mut GrowingFile) -> io::Result<()> {
         write(&frame, out)
     }
 }
@@ -39,8 +39,8 @@ impl TextFormat for Snapshots {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
-    let Frame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed, .. } = frame;
+pub fn write(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()> {
+    let ParticleFrame { particles, cell: [lx, ly], origin: [x, y], periodic, time, step, seed, .. } = frame;
     let [bottom, top] = DEPTH;
     writeln!(out, "{}", particles.len())?;
     // Unbounded space has no cell.
@@ -61,12 +61,12 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
         write!(out, " seed={seed}")?;
     }
     writeln!(out)?;
-    let mut row = Row::default();
+    let mut row = RowBuffer::default();
     for disc in particles.all() {
         row.text.clear();
         row.text.push_str(match disc.kind {
-            Kind::Grain => "Si",
-            Kind::Wall => "W",
+            ParticleKind::Grain => "Si",
+            ParticleKind::Wall => "W",
         });
         row.numbers(disc.position);
         row.word(&disc.id);
@@ -82,12 +82,12 @@ pub fn write(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
 
 /// Buffer of a row. Its number formatting is three times as fast as the standard library's.
 #[derive(Default)]
-struct Row {
+struct RowBuffer {
     text: String,
     digits: zmij::Buffer,
 }
 
-impl Row {
+impl RowBuffer {
     fn word(&mut self, word: &dyn std::fmt::Display) {
         #[expect(clippy::let_underscore_must_use, reason = "writing to a string cannot fail")]
         let _ = std::fmt::Write::write_fmt(&mut self.text, format_args!(" {word}"));

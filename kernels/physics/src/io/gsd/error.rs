@@ -9,18 +9,18 @@ use std::path::PathBuf;
 /// Reason why a trajectory cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {place}{reason}", quoted::path(file))]
-pub struct ReadError {
+pub struct GsdReadError {
     /// Path of the file.
     pub file: PathBuf,
     /// Location in the file.
-    pub place: Place,
+    pub place: GsdLocation,
     /// Reason.
-    pub reason: Reason,
+    pub reason: GsdErrorKind,
 }
 
 /// Location in a GSD file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum GsdLocation {
     /// Whole file.
     File,
     /// Byte, from 0.
@@ -34,12 +34,12 @@ pub enum Place {
     },
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for GsdLocation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Place::File => Ok(()),
-            Place::Byte(byte) => write!(f, "byte {byte}: "),
-            Place::Chunk { frame, chunk } => write!(f, "frame {frame}, {chunk}: "),
+            GsdLocation::File => Ok(()),
+            GsdLocation::Byte(byte) => write!(f, "byte {byte}: "),
+            GsdLocation::Chunk { frame, chunk } => write!(f, "frame {frame}, {chunk}: "),
         }
     }
 }
@@ -47,7 +47,7 @@ impl fmt::Display for Place {
 /// Reason of an error at a location of a GSD file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum Reason {
+pub enum GsdErrorKind {
     /// The system refuses to read it.
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
@@ -113,18 +113,18 @@ pub enum Reason {
     },
 }
 
-impl ReadError {
+impl GsdReadError {
     /// Error of the system, if the file could not be read at all.
     pub fn system(&self) -> Option<&io::Error> {
         match &self.reason {
-            Reason::Io(cause) => Some(cause),
+            GsdErrorKind::Io(cause) => Some(cause),
             _ => None,
         }
     }
 }
 
-impl From<ReadError> for TrajectoryError {
-    fn from(error: ReadError) -> TrajectoryError {
+impl From<GsdReadError> for TrajectoryError {
+    fn from(error: GsdReadError) -> TrajectoryError {
         TrajectoryError {
             line: None,
             is_of_system: error.system().is_some(),

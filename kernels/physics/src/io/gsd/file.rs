@@ -4,9 +4,9 @@
 //! describe complete frames, whenever the process is killed. A moved index is written before the heading that refers to it, and a frame before its
 //! entries.
 
-use super::layout::{ENTRY, Element, Entry, HEADING, Heading, Index, aligned, list_of};
+use super::layout::{ENTRY, GsdNumber, HEADING, Heading, Index, IndexEntry, aligned, list_of};
 use crate::io::FileError;
-use crate::io::growing_file::{GrowingFileError, Mark, created, is_as_long_as_written, reopened, synced};
+use crate::io::growing_file::{FileMark, GrowingFileError, created, is_as_long_as_written, reopened, synced};
 use crc32fast::Hasher;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
@@ -57,7 +57,7 @@ impl GsdFile {
     pub(super) fn resume(
         path: impl Into<PathBuf>,
         names: Vec<String>,
-        mark: Mark,
+        mark: FileMark,
     ) -> Result<Self, GrowingFileError> {
         let path = path.into();
         let opened = reopened(&path, mark)?;
@@ -65,7 +65,7 @@ impl GsdFile {
         let is_whole = file.read_up_to(mark.bytes).map_err(FileError::at(&file.path, "reading"))?;
         let found = file.checksum.clone().finalize();
         if !is_whole || found != mark.checksum {
-            let Mark { bytes, checksum: expected } = mark;
+            let FileMark { bytes, checksum: expected } = mark;
             return Err(GrowingFileError::Changed { file: file.path, bytes, found, expected });
         }
         Ok(file)
@@ -159,13 +159,13 @@ impl GsdFile {
         let (frame, first) = (self.frames, self.index.at + ENTRY * self.used);
         let mut entries = self.read_at(first, ENTRY as usize * self.names.len())?;
         let of_the_frame = |bytes: &&[u8]| {
-            let entry = Entry::of(bytes);
+            let entry = IndexEntry::of(bytes);
             entry.at != 0 && entry.frame == frame
         };
         let count = entries.chunks_exact(ENTRY as usize).take_while(of_the_frame).count();
         entries.truncate(count * ENTRY as usize);
-        let last = entries.chunks_exact(ENTRY as usize).next_back().map(Entry::of);
-        let end = last.and_then(Entry::end).map_or(0, aligned);
+        let last = entries.chunks_exact(ENTRY as usize).next_back().map(IndexEntry::of);
+        let end = last.and_then(IndexEntry::end).map_or(0, aligned);
         if end <= self.end || end > length {
             return Ok(false);
         }
@@ -252,7 +252,7 @@ impl GsdFile {
     ///
     /// # Errors
     /// Errors of the file.
-    pub(super) fn add<E: Element, const COLUMNS: usize>(
+    pub(super) fn add<E: GsdNumber, const COLUMNS: usize>(
         &mut self,
         name: &str,
         rows: impl IntoIterator<Item = [E; COLUMNS], IntoIter: ExactSizeIterator>,
@@ -260,7 +260,7 @@ impl GsdFile {
         let name = self.names.iter().position(|it| it == name);
         let name = name.ok_or_else(|| io::Error::other("a chunk without a name"))?;
         let (rows, of_a_row) = (rows.into_iter(), COLUMNS * size_of::<E>());
-        let entry = Entry {
+        let entry = IndexEntry {
             frame: self.frames,
             rows: rows.len() as u64,
             at: self.end,
@@ -300,8 +300,8 @@ impl GsdFile {
     ///
     /// # Errors
     /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
-    pub(super) fn sync(&mut self) -> Result<Mark, FileError> {
+    pub(super) fn sync(&mut self) -> Result<FileMark, FileError> {
         synced(&self.path, self.out.get_ref(), self.end)?;
-        Ok(Mark { bytes: self.end, checksum: self.checksum.clone().finalize() })
+        Ok(FileMark { bytes: self.end, checksum: self.checksum.clone().finalize() })
     }
 }

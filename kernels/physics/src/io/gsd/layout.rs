@@ -25,7 +25,7 @@ pub(super) const fn aligned(place: u64) -> u64 {
 }
 
 /// Type of the numbers in a chunk.
-pub(super) trait Element: Copy {
+pub(super) trait GsdNumber: Copy {
     /// Code of the type in the index.
     const CODE: u8;
 
@@ -38,7 +38,7 @@ pub(super) trait Element: Copy {
 
 macro_rules! elements {
     ($($number:ident $code:literal;)*) => {
-        $(impl Element for $number {
+        $(impl GsdNumber for $number {
             const CODE: u8 = $code;
 
             #[inline]
@@ -157,7 +157,7 @@ pub(super) fn names_of(list: &[u8]) -> Option<Vec<String>> {
 
 /// Entry of the index: location and shape of a chunk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Entry {
+pub(super) struct IndexEntry {
     pub(super) frame: u64,
     pub(super) rows: u64,
     /// Offset of the chunk (bytes); 0 for an unused entry.
@@ -167,9 +167,9 @@ pub(super) struct Entry {
     pub(super) code: u8,
 }
 
-impl Entry {
+impl IndexEntry {
     pub(super) fn bytes(self) -> [u8; ENTRY as usize] {
-        let Entry { frame, rows, at, columns, name, code } = self;
+        let IndexEntry { frame, rows, at, columns, name, code } = self;
         let mut bytes = [0; ENTRY as usize];
         let wide = [frame, rows, at].into_iter().flat_map(u64::to_le_bytes).chain(columns.to_le_bytes());
         let all = wide.chain(name.to_le_bytes()).chain([code, 0]);
@@ -178,10 +178,10 @@ impl Entry {
     }
 
     /// Decodes an entry.
-    pub(super) fn of(bytes: &[u8]) -> Entry {
+    pub(super) fn of(bytes: &[u8]) -> IndexEntry {
         let wide = |number: usize| u64::of(&bytes[8 * number..][..8]);
         let name = u16::from_le_bytes([bytes[28], bytes[29]]);
-        Entry {
+        IndexEntry {
             frame: wide(0),
             rows: wide(1),
             at: wide(2),

@@ -20,9 +20,9 @@ mod layout;
 mod reader;
 mod writer;
 
-pub use error::{Place, ReadError, Reason};
-pub use reader::Frames;
-pub use writer::{LoggedFrame, Writer};
+pub use error::{GsdErrorKind, GsdLocation, GsdReadError};
+pub use reader::GsdFrames;
+pub use writer::{GsdWriter, LoggedFrame};
 
 use super::opened::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
@@ -34,8 +34,8 @@ pub(crate) const FORMAT: OutputFormat = OutputFormat {
     is_default: false,
     needs_box: false,
     file: "trajectory.gsd",
-    writing: FrameWriting::Growing(SinkKind::of::<Writer>()),
-    reading: FrameReading::Opens(|path| Ok(reader(Frames::open(path)?))),
+    writing: FrameWriting::Growing(SinkKind::of::<GsdWriter>()),
+    reading: FrameReading::Opens(|path| Ok(reader(GsdFrames::open(path)?))),
 };
 
 /// Chunks of a frame, before a `log/` for each logged quantity. Readers expect every `log/` in the first frame.

@@ -1,14 +1,14 @@
 //! Reading of GSD files written by this program.
 
-use super::error::{Place, ReadError, Reason};
-use super::layout::{ENTRY, Element, Entry, HEADING, Heading, names_of};
+use super::error::{GsdErrorKind, GsdLocation, GsdReadError};
+use super::layout::{ENTRY, GsdNumber, HEADING, Heading, IndexEntry, names_of};
 use super::{
     ANGLE, CORNER, COUNT, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY, ID, OMEGA, PERIODIC, RADIUS, SIDES,
     STEP, TIME, TYPE,
 };
-use crate::io::extxyz::Frame;
+use crate::io::extxyz::ParticleFrame;
 use crate::io::regular_file;
-use crate::particles::{Kind, Particle, Particles};
+use crate::particles::{Particle, ParticleKind, Particles};
 use std::collections::HashSet;
 use std::fs::{File, Metadata};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -16,33 +16,34 @@ use std::path::{Path, PathBuf};
 
 /// Frames of a file, by number or as an iterator that ends after the first wrong one.
 #[derive(Debug)]
-pub struct Frames {
+pub struct GsdFrames {
     path: PathBuf,
     file: File,
     /// Bytes of the file on the disk: fewer than its length if it has holes.
     on_disk: u64,
     names: Vec<String>,
-    index: Vec<Entry>,
+    index: Vec<IndexEntry>,
     next: u64,
     failed: bool,
 }
 
-impl Frames {
+impl GsdFrames {
     /// Opens a file and reads its index.
     ///
     /// # Errors
     /// If the system refuses to read it, or it is not such a file, or it is truncated.
-    pub fn open(path: impl AsRef<Path>) -> Result<Frames, ReadError> {
+    pub fn open(path: impl AsRef<Path>) -> Result<GsdFrames, GsdReadError> {
         let path = path.as_ref().to_owned();
-        let opened = regular_file::open(&path).map_err(Reason::Io);
-        let read = opened.map_err(|reason| (Place::File, reason)).and_then(|file| {
+        let opened = regular_file::open(&path).map_err(GsdErrorKind::Io);
+        let read = opened.map_err(|reason| (GsdLocation::File, reason)).and_then(|file| {
             let (names, index) = index(&file)?;
-            let on_disk = on_disk(&file.metadata().map_err(|cause| (Place::File, Reason::Io(cause)))?);
-            Ok(Frames { path: path.clone(), file, on_disk, names, index, next: 0, failed: false })
+            let on_disk =
+                on_disk(&file.metadata().map_err(|cause| (GsdLocation::File, GsdErrorKind::Io(cause)))?);
+            Ok(GsdFrames { path: path.clone(), file, on_disk, names, index, next: 0, failed: false })
         });
         match read {
             Ok(frames) => Ok(frames),
-            Err((place, reason)) => Err(ReadError { file: path, place, reason }),
+            Err((place, reason)) => Err(GsdReadError { file: path, place, reason }),
         }
     }
 
@@ -55,23 +56,23 @@ impl Frames {
     ///
     /// # Errors
     /// If the system refuses to read it, or its chunks are not those that this program writes.
-    pub fn frame(&mut self, number: u64) -> Result<Option<Frame>, ReadError> {
+    pub fn frame(&mut self, number: u64) -> Result<Option<ParticleFrame>, GsdReadError> {
         if number >= self.frame_count() {
             return Ok(None);
         }
         let frame = Chunks { frames: self, number }.frame();
-        frame.map(Some).map_err(|(place, reason)| ReadError { file: self.path.clone(), place, reason })
+        frame.map(Some).map_err(|(place, reason)| GsdReadError { file: self.path.clone(), place, reason })
     }
 
-    fn entry(&self, frame: u64, name: usize) -> Option<Entry> {
+    fn entry(&self, frame: u64, name: usize) -> Option<IndexEntry> {
         let key = (frame, name as u16);
         let at = self.index.binary_search_by_key(&key, |entry| (entry.frame, entry.name)).ok()?;
         Some(self.index[at])
     }
 }
 
-impl Iterator for Frames {
-    type Item = Result<Frame, ReadError>;
+impl Iterator for GsdFrames {
+    type Item = Result<ParticleFrame, GsdReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.failed {
@@ -84,7 +85,7 @@ impl Iterator for Frames {
     }
 }
 
-type Wrong = (Place, Reason);
+type LocatedGsdError = (GsdLocation, GsdErrorKind);
 
 /// Longest list of names (bytes): entries number names with 16 bits, and each name has at most 63 letters.
 const LONGEST_NAMES: u64 = 64 << 16;
@@ -102,18 +103,20 @@ fn on_disk(file: &Metadata) -> u64 {
 }
 
 /// Reads the names and the entries of a file.
-fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
-    let system = |cause: io::Error| (Place::File, Reason::Io(cause));
+fn index(file: &File) -> Result<(Vec<String>, Vec<IndexEntry>), LocatedGsdError> {
+    let system = |cause: io::Error| (GsdLocation::File, GsdErrorKind::Io(cause));
     let length = file.metadata().map_err(system)?.len();
     let mut file = BufReader::new(file);
     let inside = |what, end: Option<u64>| match end {
         Some(end) if end <= length => Ok(()),
-        end => Err((Place::File, Reason::Truncated { what, end: end.unwrap_or(u64::MAX), length })),
+        end => {
+            Err((GsdLocation::File, GsdErrorKind::Truncated { what, end: end.unwrap_or(u64::MAX), length }))
+        }
     };
     let mut bytes = [0; HEADING as usize];
     inside("the heading", Some(HEADING))?;
     file.read_exact(&mut bytes).map_err(system)?;
-    let wrong = |byte, expected| (Place::Byte(byte), Reason::Expected(expected));
+    let wrong = |byte, expected| (GsdLocation::Byte(byte), GsdErrorKind::Expected(expected));
     let Heading { index, names } = Heading::read(&bytes).map_err(|(byte, expected)| wrong(byte, expected))?;
     let [first, length_of_names] = names;
     inside("the list of names", first.checked_add(length_of_names))?;
@@ -128,11 +131,11 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
         names_of(&list).ok_or(wrong(first, "names that end with a 0 each, and the last one with two"))?;
 
     file.seek(SeekFrom::Start(index.at)).map_err(system)?;
-    let mut entries: Vec<Entry> = vec![];
+    let mut entries: Vec<IndexEntry> = vec![];
     for number in 0..index.capacity {
         let mut bytes = [0; ENTRY as usize];
         file.read_exact(&mut bytes).map_err(system)?;
-        let (entry, at) = (Entry::of(&bytes), index.at + ENTRY * number);
+        let (entry, at) = (IndexEntry::of(&bytes), index.at + ENTRY * number);
         if entry.at == 0 {
             break;
         }
@@ -151,8 +154,8 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
         let Some(end) = entry.end() else { return Err(wrong(at, "a chunk of numbers of a known type")) };
         if end > length {
             return Err((
-                Place::Byte(at),
-                Reason::Truncated { what: "the chunk of this entry", end, length },
+                GsdLocation::Byte(at),
+                GsdErrorKind::Truncated { what: "the chunk of this entry", end, length },
             ));
         }
         entries.push(entry);
@@ -162,22 +165,22 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<Entry>), Wrong> {
 
 /// Access to the chunks of a frame.
 struct Chunks<'f> {
-    frames: &'f mut Frames,
+    frames: &'f mut GsdFrames,
     number: u64,
 }
 
 impl Chunks<'_> {
-    fn wrong(&self, chunk: &'static str, reason: Reason) -> Wrong {
-        (Place::Chunk { frame: self.number, chunk }, reason)
+    fn wrong(&self, chunk: &'static str, reason: GsdErrorKind) -> LocatedGsdError {
+        (GsdLocation::Chunk { frame: self.number, chunk }, reason)
     }
 
     /// Reads rows of a number of columns from the frame or, if it lacks the chunk, from the first frame; none if both lack it.
-    fn rows<E: Element>(
+    fn rows<E: GsdNumber>(
         &mut self,
         chunk: &'static str,
         rows: usize,
         columns: usize,
-    ) -> Result<Option<Vec<E>>, Wrong> {
+    ) -> Result<Option<Vec<E>>, LocatedGsdError> {
         let Some(name) = self.frames.names.iter().position(|name| name == chunk) else { return Ok(None) };
         let found = self.frames.entry(self.number, name);
         // The first frame may have another number of particles.
@@ -185,7 +188,7 @@ impl Chunks<'_> {
         let Some(entry) = found.or_else(of_first) else { return Ok(None) };
         if (entry.rows, entry.columns, entry.code) != (rows as u64, columns as u32, E::CODE) {
             let said = |rows, columns, code| format!("{rows} × {columns} numbers of type {code}");
-            let reason = Reason::Shape {
+            let reason = GsdErrorKind::Shape {
                 found: said(entry.rows, u64::from(entry.columns), entry.code),
                 expected: said(rows as u64, columns as u64, E::CODE),
             };
@@ -195,29 +198,29 @@ impl Chunks<'_> {
         let mut bytes = Vec::new();
         if length as u64 > MOST_HOLES.max(self.frames.on_disk.saturating_mul(100)) {
             return Err(
-                self.wrong(chunk, Reason::Hole { length: length as u64, on_disk: self.frames.on_disk })
+                self.wrong(chunk, GsdErrorKind::Hole { length: length as u64, on_disk: self.frames.on_disk })
             );
         }
         bytes
             .try_reserve_exact(length)
-            .map_err(|_| self.wrong(chunk, Reason::Memory { length: length as u64 }))?;
+            .map_err(|_| self.wrong(chunk, GsdErrorKind::Memory { length: length as u64 }))?;
         bytes.resize(length, 0);
         let file = &mut self.frames.file;
         let read = file.seek(SeekFrom::Start(entry.at)).and_then(|_| file.read_exact(&mut bytes));
-        read.map_err(|cause| self.wrong(chunk, Reason::Io(cause)))?;
+        read.map_err(|cause| self.wrong(chunk, GsdErrorKind::Io(cause)))?;
         Ok(Some(bytes.chunks_exact(size_of::<E>()).map(E::of).collect()))
     }
 
-    fn needed<E: Element>(
+    fn needed<E: GsdNumber>(
         &mut self,
         chunk: &'static str,
         rows: usize,
         columns: usize,
-    ) -> Result<Vec<E>, Wrong> {
-        self.rows(chunk, rows, columns)?.ok_or_else(|| self.wrong(chunk, Reason::Missing))
+    ) -> Result<Vec<E>, LocatedGsdError> {
+        self.rows(chunk, rows, columns)?.ok_or_else(|| self.wrong(chunk, GsdErrorKind::Missing))
     }
 
-    fn one<E: Element>(&mut self, chunk: &'static str) -> Result<E, Wrong> {
+    fn one<E: GsdNumber>(&mut self, chunk: &'static str) -> Result<E, LocatedGsdError> {
         Ok(self.needed(chunk, 1, 1)?[0])
     }
 
@@ -227,26 +230,26 @@ impl Chunks<'_> {
         chunk: &'static str,
         (rows, columns): (usize, usize),
         is_positive: bool,
-    ) -> Result<Vec<f64>, Wrong> {
+    ) -> Result<Vec<f64>, LocatedGsdError> {
         let numbers = self.needed::<f64>(chunk, rows, columns)?;
         let fits = |number: f64| number.is_finite() && (number > 0.0 || !is_positive);
         let Some(at) = numbers.iter().position(|&number| !fits(number)) else { return Ok(numbers) };
         let expected = if is_positive { "a finite number greater than 0" } else { "a finite number" };
-        let reason = Reason::Number { row: at / columns, found: numbers[at].to_string(), expected };
+        let reason = GsdErrorKind::Number { row: at / columns, found: numbers[at].to_string(), expected };
         Err(self.wrong(chunk, reason))
     }
 
     /// Sides of the box; infinite without a box.
-    fn sides(&mut self) -> Result<[f64; 2], Wrong> {
+    fn sides(&mut self) -> Result<[f64; 2], LocatedGsdError> {
         let sides = self.needed::<f64>(SIDES, 2, 1)?;
         let Some(row) = sides.iter().position(|side| side.is_nan() || *side <= 0.0) else {
             return Ok([sides[0], sides[1]]);
         };
         let (found, expected) = (sides[row].to_string(), "a number greater than 0");
-        Err(self.wrong(SIDES, Reason::Number { row, found, expected }))
+        Err(self.wrong(SIDES, GsdErrorKind::Number { row, found, expected }))
     }
 
-    fn frame(mut self) -> Result<Frame, Wrong> {
+    fn frame(mut self) -> Result<ParticleFrame, LocatedGsdError> {
         let count = self.one::<u32>(COUNT)? as usize;
         let (sides, corner) = (self.sides()?, self.numbers(CORNER, (2, 1), false)?);
         let periodic = self.needed::<u8>(PERIODIC, 2, 1)?;
@@ -261,18 +264,18 @@ impl Chunks<'_> {
             [self.numbers(ANGLE, (count, 1), false)?, self.numbers(OMEGA, (count, 1), false)?];
         if let Some(row) = kinds.iter().position(|&kind| kind > 1) {
             let (found, expected) = (kinds[row].to_string(), "0 (a grain) or 1 (a wall disc)");
-            return Err(self.wrong(TYPE, Reason::Number { row, found, expected }));
+            return Err(self.wrong(TYPE, GsdErrorKind::Number { row, found, expected }));
         }
         let mut seen = HashSet::with_capacity(count);
         if let Some(row) = ids.iter().position(|id| !seen.insert(*id)) {
-            return Err(self.wrong(ID, Reason::RepeatedId { row, id: ids[row] }));
+            return Err(self.wrong(ID, GsdErrorKind::RepeatedId { row, id: ids[row] }));
         }
         let vector = |of: &[f64], number: usize| {
             std::array::from_fn(|axis| if axis < axes { of[axes * number + axis] } else { 0.0 })
         };
         let particle = |number: usize| Particle {
             id: ids[number],
-            kind: if kinds[number] == 0 { Kind::Grain } else { Kind::Wall },
+            kind: if kinds[number] == 0 { ParticleKind::Grain } else { ParticleKind::Wall },
             position: vector(&position, number),
             velocity: vector(&velocity, number),
             angle: angle[number],
@@ -280,7 +283,7 @@ impl Chunks<'_> {
             radius: radius[number],
             mass: mass[number],
         };
-        Ok(Frame {
+        Ok(ParticleFrame {
             particles: Particles::new((0..count).map(particle).collect()),
             cell: sides,
             origin: [corner[0], corner[1]],

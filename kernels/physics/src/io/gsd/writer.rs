@@ -6,15 +6,15 @@
 use super::file::GsdFile;
 use super::{
     ANGLE, BOX, CHUNKS, CORNER, COUNT, DIAMETER, DIMENSIONS, EXACT_MASS, EXACT_POSITION, EXACT_VELOCITY,
-    Frames, ID, IMAGE, MASS, OMEGA, PERIODIC, POSITION, RADIUS, SIDES, STEP, TIME, TYPE, TYPE_NAMES, TYPES,
-    VELOCITY,
+    GsdFrames, ID, IMAGE, MASS, OMEGA, PERIODIC, POSITION, RADIUS, SIDES, STEP, TIME, TYPE, TYPE_NAMES,
+    TYPES, VELOCITY,
 };
 use crate::io::FileError;
-use crate::io::extxyz::Frame;
-use crate::io::growing_file::{GrowingFileError, Mark};
+use crate::io::extxyz::ParticleFrame;
+use crate::io::growing_file::{FileMark, GrowingFileError};
 use crate::io::run_moment::{RunHeader, RunMoment};
 use crate::io::sink::Sink;
-use crate::particles::{Kind, Particle};
+use crate::particles::{Particle, ParticleKind};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoggedFrame {
     /// Particles in their box, shared with other files.
-    pub frame: Arc<Frame>,
+    pub frame: Arc<ParticleFrame>,
     /// Periods that each particle has crossed along x and y since the start; empty if unknown.
     pub images: Vec<[i32; 2]>,
     /// Value of each logged quantity; NaN if unknown.
@@ -32,53 +32,57 @@ pub struct LoggedFrame {
 
 /// Open trajectory.
 #[derive(Debug)]
-pub struct Writer {
+pub struct GsdWriter {
     file: GsdFile,
     /// Names of the logged chunks.
     logged: Vec<String>,
-    first: Option<First>,
+    first: Option<FirstFrame>,
 }
 
 /// Properties of the first frame that later frames may omit.
 #[derive(Debug)]
-struct First {
+struct FirstFrame {
     ids: Vec<u32>,
     /// True if any particle has an angle or rotates.
     turns: bool,
     sides: [f32; 6],
 }
 
-impl First {
-    fn of(frame: &Frame) -> First {
+impl FirstFrame {
+    fn of(frame: &ParticleFrame) -> FirstFrame {
         let particles = frame.particles.all();
-        First { ids: ids(particles).collect(), turns: turns(particles), sides: Cell::of(frame).sides }
+        FirstFrame {
+            ids: ids(particles).collect(),
+            turns: turns(particles),
+            sides: SchemaBox::of(frame).sides,
+        }
     }
 }
 
-impl Sink for Writer {
+impl Sink for GsdWriter {
     type Entry = LoggedFrame;
 
-    fn begin(path: PathBuf, header: &RunHeader) -> Result<Writer, FileError> {
+    fn begin(path: PathBuf, header: &RunHeader) -> Result<GsdWriter, FileError> {
         let logged = chunks_of(header);
-        Ok(Writer { file: GsdFile::create(path, names(&logged))?, logged, first: None })
+        Ok(GsdWriter { file: GsdFile::create(path, names(&logged))?, logged, first: None })
     }
 
     fn resume(
         path: PathBuf,
         header: &RunHeader,
-        mark: Mark,
+        mark: FileMark,
         _notes: &mut Vec<String>,
-    ) -> Result<Writer, GrowingFileError> {
+    ) -> Result<GsdWriter, GrowingFileError> {
         let logged = chunks_of(header);
-        Ok(Writer { file: GsdFile::resume(path, names(&logged), mark)?, logged, first: None })
+        Ok(GsdWriter { file: GsdFile::resume(path, names(&logged), mark)?, logged, first: None })
     }
 
     fn cut(&mut self) -> Result<(), FileError> {
         self.file.cut()?;
         let path = self.file.path();
-        let first = Frames::open(path).and_then(|mut frames| frames.next().transpose());
+        let first = GsdFrames::open(path).and_then(|mut frames| frames.next().transpose());
         let first = first.map_err(|error| FileError::at(path, "reading")(io::Error::other(error)))?;
-        self.first = first.map(|frame| First::of(&frame));
+        self.first = first.map(|frame| FirstFrame::of(&frame));
         Ok(())
     }
 
@@ -88,7 +92,8 @@ impl Sink for Writer {
     }
 
     fn write(&mut self, LoggedFrame { frame, images, values }: LoggedFrame) -> io::Result<()> {
-        let (particles, Cell { sides, centre, is_plane }) = (frame.particles.all(), Cell::of(&frame));
+        let (particles, SchemaBox { sides, centre, is_plane }) =
+            (frame.particles.all(), SchemaBox::of(&frame));
         let first = self.first.as_ref();
         let is_first = first.is_none();
         let is_same = first.is_some_and(|first| first.ids.iter().copied().eq(ids(particles)));
@@ -113,7 +118,7 @@ impl Sink for Writer {
             file.add(TYPES, TYPE_NAMES.map(|name| name.map(|byte| byte as i8)))?;
         }
         if !is_same {
-            file.add(TYPE, particles.iter().map(|it| [u32::from(it.kind == Kind::Wall)]))?;
+            file.add(TYPE, particles.iter().map(|it| [u32::from(it.kind == ParticleKind::Wall)]))?;
             file.add(MASS, single(|it| it.mass))?;
             file.add(DIAMETER, single(|it| 2.0 * it.radius))?;
         }
@@ -151,12 +156,12 @@ impl Sink for Writer {
         }
         file.end_frame()?;
         if is_first {
-            self.first = Some(First::of(&frame));
+            self.first = Some(FirstFrame::of(&frame));
         }
         Ok(())
     }
 
-    fn mark(&mut self) -> Result<Mark, FileError> {
+    fn mark(&mut self) -> Result<FileMark, FileError> {
         self.file.sync()
     }
 }
@@ -178,7 +183,7 @@ fn names(logged: &[String]) -> Vec<String> {
 }
 
 /// Box in the schema's terms.
-struct Cell {
+struct SchemaBox {
     /// Sides along x, y and z, then the tilts.
     sides: [f32; 6],
     /// Centre of the box, the schema's origin.
@@ -186,11 +191,11 @@ struct Cell {
     is_plane: bool,
 }
 
-impl Cell {
+impl SchemaBox {
     /// A planar box has no depth, and its sides are doubled until they contain discs above an open box. Unbounded space is represented by a cube
     /// about the origin that contains all particles. Its side is a power of two, so that it rarely changes.
-    fn of(frame: &Frame) -> Cell {
-        let Frame { cell: [lx, ly], origin: [x, y], particles, .. } = frame;
+    fn of(frame: &ParticleFrame) -> SchemaBox {
+        let ParticleFrame { cell: [lx, ly], origin: [x, y], particles, .. } = frame;
         if lx.is_finite() && ly.is_finite() {
             let centre = [x + 0.5 * lx, y + 0.5 * ly, 0.0];
             let side = |axis: usize, mut side: f64| {
@@ -201,11 +206,15 @@ impl Cell {
                 }
                 side as f32
             };
-            return Cell { sides: [side(0, *lx), side(1, *ly), 0.0, 0.0, 0.0, 0.0], centre, is_plane: true };
+            return SchemaBox {
+                sides: [side(0, *lx), side(1, *ly), 0.0, 0.0, 0.0, 0.0],
+                centre,
+                is_plane: true,
+            };
         }
         let coordinates = particles.all().iter().flat_map(|it| it.position);
         let side = above(2.0 * coordinates.fold(0.5, |most: f64, x| most.max(x.abs()))) as f32;
-        Cell { sides: [side, side, side, 0.0, 0.0, 0.0], centre: [0.0; 3], is_plane: false }
+        SchemaBox { sides: [side, side, side, 0.0, 0.0, 0.0], centre: [0.0; 3], is_plane: false }
     }
 }
 

@@ -6,23 +6,25 @@ use super::idle::never;
 use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
 use super::reference::choice::{candidates, mask};
-use super::reference::grid::Sizes;
-use super::scene::Scene;
-use super::squeezed::{ROUNDING, Squeeze};
-use crate::domain::{Domain, Side};
+use super::reference::grid::ExclusiveGridSize;
+use super::scene::HardDiskScene;
+use super::squeezed::{ROUNDING, StartOverlaps};
+use crate::domain::{BoxSide, Domain};
 use crate::method::{Prepared, Until};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
-use crate::scene::{GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning};
-use crate::start::{Stated, make, noise_seed, outside, overlaps};
+use crate::scene::{
+    GENERATE, MistakeKind, RADIUS, ReadBinding, SceneError, SceneErrors, SceneValues, WallMotion, Warning,
+};
+use crate::start::{StatedStart, make, noise_seed, outside, overlaps};
 use std::sync::Arc;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 use stripmine_kernels::mask::Mask;
 
 /// Checked scene of hard discs.
 #[derive(Clone)]
-pub(super) struct Checked {
-    pub(super) scene: Scene,
+pub(super) struct CheckedHardDisks {
+    pub(super) scene: HardDiskScene,
     pub(super) domain: Domain,
     /// Shared with the simulation to save memory.
     pub(super) particles: Arc<Particles>,
@@ -36,11 +38,11 @@ pub(super) struct Checked {
 ///
 /// # Errors
 /// [`SceneErrors`] with every violated precondition.
-pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
-    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
+pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
+    let (mut scene, mut read) = (HardDiskScene::default(), ReadBinding::new(&values));
     scene.bind(&mut read);
     read.done()?;
-    let stated = Stated {
+    let stated = StatedStart {
         values: &values,
         domain: &scene.domain,
         start: &scene.start,
@@ -49,7 +51,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     };
     let made = make(&stated)?;
     let (domain, mut particles, mut warnings) = (made.domain, made.particles, made.warnings);
-    let squeeze = Squeeze::of(&domain, &particles);
+    let squeeze = StartOverlaps::of(&domain, &particles);
     warnings.extend(squeeze.undone(&values, &scene, &mut particles));
     let mut errors = outside(&stated, &domain, &particles);
     if squeeze.is_deep() {
@@ -69,7 +71,7 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
     let mut choices = vec![];
     let mask = match particles.radii() {
         Some(radii) => way_of(&values, &mut scene, &domain, radii, &particles, &mut choices),
-        None => Err(values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate")),
+        None => Err(values.spot(&RADIUS).error(MistakeKind::Geometry, "there is nothing to simulate")),
     };
     let mask = mask.unwrap_or_else(|error| {
         errors.push(error);
@@ -85,16 +87,16 @@ pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
         thermal.seed = noise_seed(&scene.start, thermal.seed, &particles);
     }
     let particles = Arc::new(particles);
-    let checked = Checked { scene, domain, particles, mask, warnings, choices };
+    let checked = CheckedHardDisks { scene, domain, particles, mask, warnings, choices };
     SceneErrors::none_of(checked.endless(&values).into_iter().collect())?;
     Ok(checked.prepared())
 }
 
 /// Error for a disc that reaches beyond a closed side.
-fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Option<SceneError> {
+fn beyond_sides(values: &SceneValues, domain: &Domain, particles: &Particles) -> Option<SceneError> {
     let beyond = |disc: &&Particle| {
         (0..2).any(|axis| match domain.sides[axis] {
-            Side::Closed(side) => {
+            BoxSide::Closed(side) => {
                 let along = disc.position[axis] - domain.origin[axis];
                 along < disc.radius * (1.0 - ROUNDING) || along > side - disc.radius * (1.0 - ROUNDING)
             }
@@ -107,12 +109,17 @@ fn beyond_sides(values: &Values, domain: &Domain, particles: &Particles) -> Opti
         "disc {} at ({x}, {y}) with radius {} reaches beyond a side that is not periodic",
         first.id, first.radius
     );
-    let error = values.spot(&GENERATE).error(Reason::Placement, message);
+    let error = values.spot(&GENERATE).error(MistakeKind::Placement, message);
     Some(error.advising("make the sides periodic, or list discs at least a radius away from the sides"))
 }
 
 /// Error for a floor that rises so high that a disc does not fit below the ceiling.
-fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particles) -> Option<SceneError> {
+fn squeezed(
+    values: &SceneValues,
+    scene: &HardDiskScene,
+    domain: &Domain,
+    particles: &Particles,
+) -> Option<SceneError> {
     let swing = 2.0 * scene.law.floor?.amplitude;
     let [_, largest] = particles.radii()?;
     let room = domain.length(1) - swing;
@@ -121,7 +128,7 @@ fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particl
             "the floor rises by {swing} and leaves a height of {} below the ceiling for a disc of radius {largest}",
             significant(room, 7)
         );
-        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Geometry, message);
+        let error = values.spot(&FLOOR_AMPLITUDE).error(MistakeKind::Geometry, message);
         error.advising(
             "lower law.floor_amplitude, raise the second of domain.sides, or set domain.open_top = true",
         )
@@ -129,36 +136,36 @@ fn squeezed(values: &Values, scene: &Scene, domain: &Domain, particles: &Particl
 }
 
 /// Error for wall discs, which hard discs do not support.
-fn fixed(values: &Values, particles: &Particles) -> Option<SceneError> {
+fn fixed(values: &SceneValues, particles: &Particles) -> Option<SceneError> {
     let count = particles.len() - particles.grain_count();
     (count > 0).then(|| {
         let message = format!("{count} wall discs, but every hard disc moves");
-        let error = values.spot(&GENERATE).error(Reason::Contradiction, message);
+        let error = values.spot(&GENERATE).error(MistakeKind::Contradiction, message);
         error.expecting("generate = \"hexagonal\", \"random\" or \"list\", or a file without wall discs")
     })
 }
 
 /// Error for a run of events in a scene that can have none.
 fn without_events(
-    values: &Values,
-    scene: &Scene,
+    values: &SceneValues,
+    scene: &HardDiskScene,
     domain: Domain,
     particles: &Particles,
 ) -> Option<SceneError> {
     let is_idle = || never(&scene.arena(domain), &discs(&domain, particles).0);
     (matches!(scene.run.until, Until::Events(_)) && is_idle()).then(|| {
         let message = "nothing will ever happen: no disc meets another disc or a side";
-        let error = values.spot(&EVENTS).error(Reason::Contradiction, message);
+        let error = values.spot(&EVENTS).error(MistakeKind::Contradiction, message);
         error.advising("give the discs a temperature or other velocities, or set run.time")
     })
 }
 
 /// Returns the discs in the order of their ids, and the index of the particle of each.
-fn discs(domain: &Domain, particles: &Particles) -> (Vec<Disc>, Vec<usize>) {
+fn discs(domain: &Domain, particles: &Particles) -> (Vec<FlyingDisc>, Vec<usize>) {
     let all = particles.all();
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by_key(|&place| all[place].id);
-    let disc = |&place: &usize| Disc {
+    let disc = |&place: &usize| FlyingDisc {
         position: domain.wrapped(all[place].place()),
         velocity: all[place].planar_velocity(),
         time: 0.0,
@@ -171,8 +178,8 @@ fn discs(domain: &Domain, particles: &Particles) -> (Vec<Disc>, Vec<usize>) {
 
 /// Selects the engine. Returns the mask of the reference engine, or none for the fast engine.
 fn way_of(
-    values: &Values,
-    scene: &mut Scene,
+    values: &SceneValues,
+    scene: &mut HardDiskScene,
     domain: &Domain,
     radii: [f64; 2],
     particles: &Particles,
@@ -183,7 +190,7 @@ fn way_of(
     let small = "the box is too small for lists: a disc would list others across two of its sides";
     let way = match (scene.engine, displacement_limit) {
         (EngineChoice::Fast, None) => {
-            let error = values.spot(&ENGINE).error(Reason::Geometry, small);
+            let error = values.spot(&ENGINE).error(MistakeKind::Geometry, small);
             return Err(error.expecting("engine = \"reference\" or \"auto\", or a larger box"));
         }
         (EngineChoice::Auto, None) => {
@@ -206,8 +213,8 @@ fn way_of(
 
 /// Returns the requested mask, or the cheapest one.
 fn serving(
-    values: &Values,
-    scene: &mut Scene,
+    values: &SceneValues,
+    scene: &mut HardDiskScene,
     domain: &Domain,
     radii: [f64; 2],
     count: usize,
@@ -216,13 +223,13 @@ fn serving(
     let all = candidates(domain, radii, count);
     let serve: Vec<&str> = all.iter().filter(|it| it.predictions.is_finite()).map(|it| it.name).collect();
     let refused = |message: String| {
-        let error = values.spot(&MASK).error(Reason::Geometry, message);
+        let error = values.spot(&MASK).error(MistakeKind::Geometry, message);
         match serve.as_slice() {
             [] => error.advising("use a larger box, or radii that differ less"),
             names => error.expecting(format!("one of {}", names.join(", "))),
         }
     };
-    let Sizes { cells: [columns, rows], .. } = Sizes::new(domain, radii[0]);
+    let ExclusiveGridSize { cells: [columns, rows], .. } = ExclusiveGridSize::new(domain, radii[0]);
     let [low, high] = radii.map(|radius| significant(radius, 5));
     let in_words = format!("{columns} × {rows} cells, discs of radii {low} to {high}");
     match all.iter().find(|it| it.name == scene.mask) {
@@ -248,9 +255,9 @@ fn serving(
     mask(&scene.mask).ok_or_else(|| refused(format!("no mask is called {}", scene.mask)))
 }
 
-impl Checked {
+impl CheckedHardDisks {
     /// Returns the discs in the order of their ids, and the index of the particle of each.
-    pub(super) fn discs(&self) -> (Vec<Disc>, Vec<usize>) {
+    pub(super) fn discs(&self) -> (Vec<FlyingDisc>, Vec<usize>) {
         discs(&self.domain, &self.particles)
     }
 

@@ -4,8 +4,8 @@
 //! - Rest: a disc that lies on a side, or on resting discs, bounces for ever, at the rate at which the contact duration of the
 //!   TC model makes bounces elastic. Hard discs have no lasting contacts.
 
-use super::engine::{Occurred, Partner};
-use crate::io::checkpoint::Column;
+use super::engine::{EventPartner, ExecutedEvent};
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
 
 /// Events per window.
@@ -24,7 +24,7 @@ const INVOLVED: &str = "watch.involved";
 
 /// Monitor of the event rate.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Watch {
+pub(super) struct CollapseMonitor {
     events: u64,
     begun: f64,
     /// Time in which a typical disc flies through a radius, and the events until it is recalculated. These are as many as there are
@@ -42,7 +42,7 @@ pub(super) struct Watch {
 
 /// Finding of the monitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Endless {
+pub(crate) struct EndlessCollisions {
     /// True if discs have come to rest; false for a collapse.
     pub(crate) rests: bool,
     pub events: u64,
@@ -50,12 +50,12 @@ pub(crate) struct Endless {
     pub duration: f64,
 }
 
-impl Watch {
+impl CollapseMonitor {
     /// Starts the monitor. `crossing` is the time in which a typical disc flies through a radius, `fall` the time to fall through a
     /// radius, infinite without gravity.
-    pub(super) fn new(crossing: f64, fall: f64, discs: usize) -> Watch {
+    pub(super) fn new(crossing: f64, fall: f64, discs: usize) -> CollapseMonitor {
         let discs = discs as u64;
-        Watch {
+        CollapseMonitor {
             events: 0,
             begun: 0.0,
             crossing,
@@ -89,16 +89,20 @@ impl Watch {
         kept.add_count("watch.renewed_after", self.renewed_after);
         kept.add_count("watch.thick", self.thick);
         kept.add_count("watch.involved_count", self.involved.len() as u64);
-        kept.add_column(INVOLVED, Column::U32(self.involved.clone()));
+        kept.add_column(INVOLVED, CheckpointColumn::U32(self.involved.clone()));
     }
 
     /// Registers an event. `crossing` returns the current time in which a typical disc flies through a radius.
     #[inline]
-    pub(crate) fn see(&mut self, happened: &Occurred, crossing: impl FnOnce() -> f64) -> Option<Endless> {
+    pub(crate) fn see(
+        &mut self,
+        happened: &ExecutedEvent,
+        crossing: impl FnOnce() -> f64,
+    ) -> Option<EndlessCollisions> {
         self.events += 1;
         if self.fall.is_finite() && self.involved.len() <= FEW {
             self.involve(happened.disc);
-            if let Partner::Disc(other) = happened.with {
+            if let EventPartner::Disc(other) = happened.with {
                 self.involve(other);
             }
         }
@@ -117,7 +121,7 @@ impl Watch {
         self.involved.clear();
         let collapses = duration < PART * self.crossing;
         let rests = !collapses && self.thick >= WINDOWS;
-        (collapses || rests).then_some(Endless { rests, events: WINDOW, duration })
+        (collapses || rests).then_some(EndlessCollisions { rests, events: WINDOW, duration })
     }
 
     fn involve(&mut self, disc: u32) {
@@ -131,15 +135,15 @@ impl Watch {
 mod tests {
     use super::*;
 
-    fn at(time: f64, disc: u32, with: Partner) -> Occurred {
-        Occurred { time, disc, with, impact: None, thrust: 0.0, work: 0.0, action: 0.0, free: [0.0; 2] }
+    fn at(time: f64, disc: u32, with: EventPartner) -> ExecutedEvent {
+        ExecutedEvent { time, disc, with, impact: None, thrust: 0.0, work: 0.0, action: 0.0, free: [0.0; 2] }
     }
 
     /// Feeds events `apart` in time, of `discs` discs in turn. Returns the number of events until detection, and the finding.
     fn found(fall: f64, apart: f64, discs: u32) -> Option<(u64, bool)> {
-        let mut watch = Watch::new(1.0, fall, 100);
+        let mut watch = CollapseMonitor::new(1.0, fall, 100);
         (1..=20_000).find_map(|event| {
-            let happened = at(event as f64 * apart, event as u32 % discs, Partner::Wall(1));
+            let happened = at(event as f64 * apart, event as u32 % discs, EventPartner::Wall(1));
             watch.see(&happened, || 1.0).map(|endless| (event, endless.rests))
         })
     }

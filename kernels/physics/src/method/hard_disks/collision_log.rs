@@ -1,9 +1,9 @@
 //! Rows of `events.csv`, one per collision.
 
-use super::engine::{Occurred, Partner};
+use super::engine::{EventPartner, ExecutedEvent};
 use super::event::Arena;
 use std::fmt::Write;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Columns. `partner` is an id or the name of a side. `x` and `y` are the point of contact. The impulse is that given to `disc`; a side
 /// gives one only across itself. Free times are counted from the previous event of either disc, or from the start.
@@ -19,21 +19,21 @@ impl Log {
     pub(super) fn add<'d>(
         &mut self,
         event: u64,
-        happened: &Occurred,
+        happened: &ExecutedEvent,
         arena: &Arena,
-        disc: &dyn Fn(u32) -> &'d Disc,
+        disc: &dyn Fn(u32) -> &'d FlyingDisc,
         id: &dyn Fn(u32) -> u32,
     ) {
-        let Occurred { time, disc: number, with, impact, thrust, free, .. } = *happened;
+        let ExecutedEvent { time, disc: number, with, impact, thrust, free, .. } = *happened;
         let own = disc(number);
         let (partner, towards, impulse) = match with {
-            Partner::Disc(other) => {
+            EventPartner::Disc(other) => {
                 let whole = arena.domain.displacement(own.position, disc(other).position);
                 let share = own.radius / (own.radius + disc(other).radius);
                 let impulse = impact.map_or([0.0; 2], |impact| impact.impulse);
                 (id(other).to_string(), whole.map(|d| share * d), impulse)
             }
-            Partner::Wall(axis) => {
+            EventPartner::Wall(axis) => {
                 let axis = usize::from(axis);
                 let middle = arena.domain.origin[axis] + 0.5 * arena.domain.length(axis);
                 let is_high = own.position[axis] > middle;
@@ -48,8 +48,8 @@ impl Log {
         let [x, y] = [0, 1].map(|axis| own.position[axis] + towards[axis]);
         let [across, along] = impulse;
         let free = match with {
-            Partner::Disc(_) => format!("{:?},{:?}", free[0], free[1]),
-            Partner::Wall(_) => format!("{:?},", free[0]),
+            EventPartner::Disc(_) => format!("{:?},{:?}", free[0], free[1]),
+            EventPartner::Wall(_) => format!("{:?},", free[0]),
         };
         let id = id(number);
         #[expect(clippy::let_underscore_must_use, reason = "a string takes whatever is written")]

@@ -1,14 +1,14 @@
 //! Dense starts by the Lubachevsky–Stillinger method: discs move and collide while their radii grow to the final values.
 
-use super::engine::Engine;
-use super::event::{Arena, Law};
+use super::engine::EventEngine;
+use super::event::{Arena, CollisionLaw};
 use super::fast::{Fast, displacement_limit};
 use crate::domain::Domain;
 use crate::particles::{Particle, in_space};
-use crate::start::Uncompressed;
+use crate::start::CompressionFailure;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::flight::{Disc, Growth};
-use stripmine_kernels::noise::{Purpose, normals};
+use stripmine_kernels::flight::{FlyingDisc, RadiusGrowth};
+use stripmine_kernels::noise::{RandomPurpose, normals};
 
 /// Relative growth of the radii while a typical disc flies through the mean radius: fast at low density, slow where the
 /// discs have to order.
@@ -26,22 +26,27 @@ const MOST: u64 = 40_000;
 ///
 /// # Errors
 /// [`Uncompressed`], with the packing fraction reached, or if the box is too small.
-pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64) -> Result<(), Uncompressed> {
+pub fn compress(
+    domain: &Domain,
+    grains: &mut [Particle],
+    scale: f64,
+    seed: u64,
+) -> Result<(), CompressionFailure> {
     let count = grains.len() as u64;
     let mean = grains.iter().map(|grain| grain.radius).sum::<f64>() / count.max(1) as f64;
     let area: f64 = grains.iter().map(|grain| std::f64::consts::PI * grain.radius * grain.radius).sum();
     let packing = area / domain.area();
-    let law = Law::ELASTIC;
+    let law = CollisionLaw::ELASTIC;
     let arena = Arena::new(*domain, [0.0; 2], law);
     if displacement_limit(&arena, grains.iter().map(|grain| grain.radius)).is_none() {
-        return Err(Uncompressed::TooSmall);
+        return Err(CompressionFailure::TooSmall);
     }
     // Masses do not matter here: all masses and kT are 1; speeds are in mean radii.
-    let mut discs: Vec<Disc> = grains
+    let mut discs: Vec<FlyingDisc> = grains
         .iter()
-        .map(|grain| Disc {
+        .map(|grain| FlyingDisc {
             position: domain.wrapped(grain.place()),
-            velocity: normals(seed, Purpose::Placement, grain.id, 2).map(|v| mean * v),
+            velocity: normals(seed, RandomPurpose::Placement, grain.id, 2).map(|v| mean * v),
             time: 0.0,
             radius: grain.radius * (1.0 + BEYOND),
             mass: 1.0,
@@ -53,9 +58,9 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
         let crowded = packing * scale * scale > CROWDED;
         let rate = GROWTH[usize::from(crowded)];
         let end = (1.0 - scale) / rate;
-        let growing = arena.growing(Growth { from: scale, rate });
+        let growing = arena.growing(RadiusGrowth { from: scale, rate });
         let begun = Fast::new(growing, discs.clone(), InstructionSet::best(), 0.0);
-        let mut engine = begun.map_err(|_| Uncompressed::TooSmall)?;
+        let mut engine = begun.map_err(|_| CompressionFailure::TooSmall)?;
         let mut time = end;
         for _ in 0..BETWEEN * count / 2 {
             match engine.next(end, u64::MAX) {
@@ -64,7 +69,7 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
                     time = end;
                     break;
                 }
-                Err(_) => return Err(Uncompressed::Jammed { reached: packing * scale * scale }),
+                Err(_) => return Err(CompressionFailure::Jammed { reached: packing * scale * scale }),
             }
         }
         events += BETWEEN;
@@ -79,7 +84,7 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
             disc.velocity = disc.velocity.map(|v| cooled * v);
         }
         if events > MOST {
-            return Err(Uncompressed::Jammed { reached: packing * scale * scale });
+            return Err(CompressionFailure::Jammed { reached: packing * scale * scale });
         }
     }
     for (grain, disc) in grains.iter_mut().zip(&discs) {
@@ -91,14 +96,14 @@ pub fn compress(domain: &Domain, grains: &mut [Particle], scale: f64, seed: u64)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::particles::Kind;
-    use crate::placement::{Filling, Second, random};
+    use crate::particles::ParticleKind;
+    use crate::placement::{RandomPlacement, Second, random};
 
     fn start(domain: Domain, packing: f64, spread: f64, scale: f64) -> Vec<Particle> {
         let mean = 0.5;
         let count = (packing * domain.area() / (std::f64::consts::PI * mean * mean)) as usize;
         let [x, y] = domain.lengths();
-        let filling = Filling {
+        let filling = RandomPlacement {
             domain,
             room: [[0.0; 2], [x, y]],
             obstacles: &[],
@@ -112,7 +117,7 @@ mod tests {
         };
         let mut grains = random(&filling).unwrap();
         grains.iter_mut().for_each(|grain| grain.radius /= scale);
-        assert!(grains.iter().all(|grain| grain.kind == Kind::Grain));
+        assert!(grains.iter().all(|grain| grain.kind == ParticleKind::Grain));
         grains
     }
 
@@ -141,6 +146,6 @@ mod tests {
     fn compression_rejects_too_small_boxes() {
         let domain = Domain::planar([0.0; 2], [2.1; 2], [true; 2]);
         let mut grains = start(domain, 0.6, 0.0, 0.6);
-        assert_eq!(compress(&domain, &mut grains, 0.6, 3), Err(Uncompressed::TooSmall));
+        assert_eq!(compress(&domain, &mut grains, 0.6, 3), Err(CompressionFailure::TooSmall));
     }
 }

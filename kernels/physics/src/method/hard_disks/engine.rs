@@ -1,25 +1,25 @@
 //! Interface of the engines that find events. All engines give the same events at the same times, to the bit.
 
-use super::event::{Arena, Bounce, Impact};
+use super::event::{Arena, DiscCollision, WallBounce};
 use super::operations::Operations;
 use crate::method::Snapshot;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Event-driven engine, which owns the moving discs. Discs are numbered in the order of their ids.
-pub(crate) trait Engine: Send {
+pub(crate) trait EventEngine: Send {
     /// Number of discs.
     fn count(&self) -> usize;
 
     /// Returns a disc in its state after its last event.
-    fn disc(&self, number: u32) -> &Disc;
+    fn disc(&self, number: u32) -> &FlyingDisc;
 
     /// Executes the next event if it comes no later than `until` (time) and before all discs have had their partners searched
     /// `most` times.
     ///
     /// # Errors
     /// [`EngineError`] if a precondition of the engine is broken.
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError>;
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError>;
 
     /// Number of partner searches per disc.
     fn rebuilds(&self) -> u64;
@@ -34,7 +34,7 @@ pub(crate) trait Engine: Send {
     ///
     /// # Errors
     /// A message if the state does not belong to this engine and these discs.
-    fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String>;
+    fn restore(&mut self, discs: Vec<FlyingDisc>, kept: &Snapshot) -> Result<(), String>;
 
     /// Names and values of the engine for the summary of a run.
     fn figures(&self) -> Vec<(&'static str, f64)>;
@@ -42,7 +42,7 @@ pub(crate) trait Engine: Send {
 
 /// Partner of a disc in an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Partner {
+pub(crate) enum EventPartner {
     /// Disc, by number.
     Disc(u32),
     /// Closed side across an axis.
@@ -51,14 +51,14 @@ pub(crate) enum Partner {
 
 /// Event that has been executed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Occurred {
+pub(crate) struct ExecutedEvent {
     /// Time of the event.
     pub time: f64,
     /// Number of the disc; of two discs the smaller number.
     pub disc: u32,
-    pub with: Partner,
+    pub with: EventPartner,
     /// Collision data, for two discs.
-    pub(crate) impact: Option<Impact>,
+    pub(crate) impact: Option<DiscCollision>,
     /// Momentum given by a wall (mass · length/time); 0 between discs.
     pub(crate) thrust: f64,
     /// Energy given to the discs; negative if taken.
@@ -84,20 +84,25 @@ pub(crate) enum EngineError {
     NoInstructions(InstructionSet),
 }
 
-impl Occurred {
+impl ExecutedEvent {
     /// Collides two discs, given with their numbers in any order.
     #[inline]
-    pub(crate) fn collision(arena: &Arena, a: (u32, &mut Disc), b: (u32, &mut Disc), time: f64) -> Occurred {
+    pub(crate) fn collision(
+        arena: &Arena,
+        a: (u32, &mut FlyingDisc),
+        b: (u32, &mut FlyingDisc),
+        time: f64,
+    ) -> ExecutedEvent {
         let ((a, one), (b, other)) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let free = [time - one.time, time - other.time];
         let action =
             if arena.keeps_kinetic { 0.0 } else { arena.action(one, time) + arena.action(other, time) };
         let impact = arena.collide(one, other, time);
         let work = -impact.loss;
-        Occurred {
+        ExecutedEvent {
             time,
             disc: a,
-            with: Partner::Disc(b),
+            with: EventPartner::Disc(b),
             impact: Some(impact),
             thrust: 0.0,
             work,
@@ -108,10 +113,24 @@ impl Occurred {
 
     /// Reflects a disc from a closed side across an axis.
     #[inline]
-    pub(crate) fn at_wall(arena: &Arena, (number, disc): (u32, &mut Disc), axis: u8, time: f64) -> Occurred {
+    pub(crate) fn at_wall(
+        arena: &Arena,
+        (number, disc): (u32, &mut FlyingDisc),
+        axis: u8,
+        time: f64,
+    ) -> ExecutedEvent {
         let free = [time - disc.time, 0.0];
         let action = if arena.keeps_kinetic { 0.0 } else { arena.action(disc, time) };
-        let Bounce { thrust, work } = arena.rebound(disc, number, axis.into(), time);
-        Occurred { time, disc: number, with: Partner::Wall(axis), impact: None, thrust, work, action, free }
+        let WallBounce { thrust, work } = arena.rebound(disc, number, axis.into(), time);
+        ExecutedEvent {
+            time,
+            disc: number,
+            with: EventPartner::Wall(axis),
+            impact: None,
+            thrust,
+            work,
+            action,
+            free,
+        }
     }
 }

@@ -6,10 +6,10 @@ use super::keys::{ENGINE, VOCABULARY};
 use super::options::EngineChoice;
 use super::quantities::QUANTITIES;
 use crate::method::trials::settings;
-use crate::method::{Axis, Decides, Entry};
+use crate::method::{ChoiceEffect, MethodEntry, SettingAxis};
 
 /// Event-driven hard discs.
-pub static ENTRY: Entry = Entry {
+pub static ENTRY: MethodEntry = MethodEntry {
     vocabulary: &VOCABULARY,
     source: "Isobe 1999 (ISO99)",
     doc: "hard discs that fly straight between instantaneous collisions: no time step",
@@ -21,9 +21,9 @@ pub static ENTRY: Entry = Entry {
     trials: None,
 };
 
-const AXES: &[Axis] = &[Axis {
+const AXES: &[SettingAxis] = &[SettingAxis {
     name: "engine",
-    decides: Decides::Cost,
+    decides: ChoiceEffect::Cost,
     settings: settings! {
         "fast" [ENGINE = EngineChoice::Fast],
         "reference" [ENGINE = EngineChoice::Reference],

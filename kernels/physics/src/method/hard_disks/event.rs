@@ -2,14 +2,14 @@
 
 use super::fall::fall;
 use super::floor::Floor;
-use crate::domain::{Domain, Side};
+use crate::domain::{BoxSide, Domain};
 use crate::observe::conserved_axes;
-use stripmine_kernels::flight::{Disc, Growth, Space};
-use stripmine_kernels::noise::{Purpose, normals};
+use stripmine_kernels::flight::{FlyingDisc, RadiusGrowth, Space};
+use stripmine_kernels::noise::{RandomPurpose, normals};
 
 /// Collision law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Law {
+pub(crate) struct CollisionLaw {
     /// Restitution of two discs: ratio of the relative normal speeds after and before the collision.
     pub restitution: f64,
     /// Restitution at walls.
@@ -17,20 +17,25 @@ pub(crate) struct Law {
     /// Collisions sooner than this after another event of either disc are elastic (time): TC model of Luding and McNamara.
     pub contact_duration: f64,
     /// Thermal side, if any.
-    pub(crate) thermal: Option<Thermal>,
+    pub(crate) thermal: Option<ThermalWall>,
     /// Motion of the floor, the lower end of the second side; none if it is at rest.
     pub floor: Option<Floor>,
 }
 
-impl Law {
+impl CollisionLaw {
     /// Elastic collisions and reflecting sides.
-    pub(crate) const ELASTIC: Law =
-        Law { restitution: 1.0, wall_restitution: 1.0, contact_duration: 0.0, thermal: None, floor: None };
+    pub(crate) const ELASTIC: CollisionLaw = CollisionLaw {
+        restitution: 1.0,
+        wall_restitution: 1.0,
+        contact_duration: 0.0,
+        thermal: None,
+        floor: None,
+    };
 }
 
 /// Thermal wall, which re-emits discs with velocities of its own temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Thermal {
+pub(crate) struct ThermalWall {
     /// Axis of the side; true for the upper one.
     pub side: (usize, bool),
     /// Temperature kT (energy).
@@ -41,7 +46,7 @@ pub(crate) struct Thermal {
 
 /// Result of a collision of two discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Impact {
+pub(crate) struct DiscCollision {
     /// Impulse given to the disc with the smaller number (mass · length/time).
     pub impulse: [f64; 2],
     /// Contribution to the virial: impulse times the distance of the centres (mass · length²/time).
@@ -54,7 +59,7 @@ pub(crate) struct Impact {
 
 /// Effect of a side on a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bounce {
+pub(crate) struct WallBounce {
     /// Magnitude of the momentum given (mass · length/time).
     pub(crate) thrust: f64,
     /// Energy given; negative if taken.
@@ -69,16 +74,16 @@ pub(crate) struct Arena {
     /// Periods, gravity and growth of free flight.
     pub(crate) space: Space,
     /// Collision law.
-    pub law: Law,
+    pub law: CollisionLaw,
     /// True if the kinetic energy is constant: no gravity, and no collision and no side changes the energy.
     pub(crate) keeps_kinetic: bool,
 }
 
 impl Arena {
     /// Creates the arena of a box, with an acceleration of all discs (length/time²).
-    pub(crate) fn new(domain: Domain, gravity: [f64; 2], law: Law) -> Arena {
+    pub(crate) fn new(domain: Domain, gravity: [f64; 2], law: CollisionLaw) -> Arena {
         let period = |axis: usize| match domain.sides[axis] {
-            Side::Periodic(period) => Some(period),
+            BoxSide::Periodic(period) => Some(period),
             _ => None,
         };
         let keeps_kinetic = gravity == [0.0; 2]
@@ -90,13 +95,13 @@ impl Arena {
     }
 
     /// Returns the arena with growing discs.
-    pub(crate) fn growing(self, growth: Growth) -> Arena {
+    pub(crate) fn growing(self, growth: RadiusGrowth) -> Arena {
         Arena { space: self.space.growing(growth), ..self }
     }
 
     /// Radius of a disc at a time (length), and its rate of growth (length/time).
     #[inline]
-    fn radius(&self, disc: &Disc, time: f64) -> [f64; 2] {
+    fn radius(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
         match self.space.growth() {
             None => [disc.radius, 0.0],
             Some(growth) => [disc.radius * growth.scale(time), disc.radius * growth.rate],
@@ -104,13 +109,13 @@ impl Arena {
     }
 
     /// Position of a disc at a time, inside the box along periodic sides (length).
-    pub(crate) fn place(&self, disc: &Disc, time: f64) -> [f64; 2] {
+    pub(crate) fn place(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
     }
 
     /// Action of a disc's flight from its last event to a time: ∫ m v² dt (energy · time), twice the time integral of its kinetic energy.
     #[inline]
-    pub(crate) fn action(&self, disc: &Disc, time: f64) -> f64 {
+    pub(crate) fn action(&self, disc: &FlyingDisc, time: f64) -> f64 {
         let flown = time - disc.time;
         let [u, v] = disc.velocity;
         let mean_square = match self.space.gravity() {
@@ -121,7 +126,7 @@ impl Arena {
     }
 
     /// Potential energy of a disc at a time (energy), zero at the lower corner of the box.
-    pub(crate) fn potential(&self, disc: &Disc, time: f64) -> f64 {
+    pub(crate) fn potential(&self, disc: &FlyingDisc, time: f64) -> f64 {
         let Some(gravity) = self.space.gravity() else { return 0.0 };
         let place = self.place(disc, time);
         let [along_x, along_y] = [0, 1].map(|axis| gravity[axis] * (place[axis] - self.domain.origin[axis]));
@@ -138,32 +143,32 @@ impl Arena {
 
     /// Advances a disc to the time of its event.
     #[inline]
-    fn advance(&self, disc: &mut Disc, time: f64) {
+    fn advance(&self, disc: &mut FlyingDisc, time: f64) {
         let (position, velocity) = (self.place(disc, time), disc.velocity_at(&self.space, time));
         (disc.position, disc.velocity, disc.time) = (position, velocity, time);
         disc.events += 1;
     }
 
     /// True if an event of a disc follows its last one so soon that it is elastic.
-    fn is_too_soon(&self, disc: &Disc, time: f64) -> bool {
+    fn is_too_soon(&self, disc: &FlyingDisc, time: f64) -> bool {
         disc.events > 0 && time - disc.time < self.law.contact_duration
     }
 
     /// Time at which a disc meets a closed side, and the axis; infinite if no side is ahead.
     #[inline]
-    pub(crate) fn wall(&self, disc: &Disc) -> (f64, usize) {
+    pub(crate) fn wall(&self, disc: &FlyingDisc) -> (f64, usize) {
         let along = |axis: usize| match self.domain.sides[axis] {
-            Side::Closed(side) => self.wall_along(disc, axis, Some(side)),
+            BoxSide::Closed(side) => self.wall_along(disc, axis, Some(side)),
             // An open side is closed below.
-            Side::Open => self.wall_along(disc, axis, None),
-            Side::Periodic(_) | Side::Flat => f64::INFINITY,
+            BoxSide::Open => self.wall_along(disc, axis, None),
+            BoxSide::Periodic(_) | BoxSide::Flat => f64::INFINITY,
         };
         let [x, y] = [along(0), along(1)];
         if y < x { (y, 1) } else { (x, 0) }
     }
 
     /// Time at which a disc meets an end of a side: the low end, or the high end if the side has a length.
-    fn wall_along(&self, disc: &Disc, axis: usize, side: Option<f64>) -> f64 {
+    fn wall_along(&self, disc: &FlyingDisc, axis: usize, side: Option<f64>) -> f64 {
         let (low, v) = (self.domain.origin[axis], disc.velocity[axis]);
         let g = self.space.gravity().map_or(0.0, |gravity| gravity[axis]);
         let [radius, swelling] = self.radius(disc, disc.time);
@@ -183,8 +188,8 @@ impl Arena {
     }
 
     /// Collides two discs; `a` has the smaller number.
-    pub(crate) fn collide(&self, a: &mut Disc, b: &mut Disc, time: f64) -> Impact {
-        let Law { restitution, .. } = self.law;
+    pub(crate) fn collide(&self, a: &mut FlyingDisc, b: &mut FlyingDisc, time: f64) -> DiscCollision {
+        let CollisionLaw { restitution, .. } = self.law;
         let was_made_elastic = restitution < 1.0 && (self.is_too_soon(a, time) || self.is_too_soon(b, time));
         let restitution = if was_made_elastic { 1.0 } else { restitution };
         self.advance(a, time);
@@ -205,11 +210,11 @@ impl Arena {
         a.velocity = [a.velocity[0] - of_a * dx, a.velocity[1] - of_a * dy];
         b.velocity = [b.velocity[0] + of_b * dx, b.velocity[1] + of_b * dy];
         let loss = -0.5 * (1.0 - restitution) * closing * impulse;
-        Impact { impulse: [-impulse * dx, -impulse * dy], virial, loss, was_made_elastic }
+        DiscCollision { impulse: [-impulse * dx, -impulse * dy], virial, loss, was_made_elastic }
     }
 
     /// Reflects a disc from a closed side across an axis, or re-emits it from a thermal side; `number` is the disc's.
-    pub(crate) fn rebound(&self, disc: &mut Disc, number: u32, axis: usize, time: f64) -> Bounce {
+    pub(crate) fn rebound(&self, disc: &mut FlyingDisc, number: u32, axis: usize, time: f64) -> WallBounce {
         let too_soon = self.is_too_soon(disc, time);
         self.advance(disc, time);
         let before = disc.velocity;
@@ -243,18 +248,18 @@ impl Arena {
         }
         // Twice the gain of kinetic energy over the mass, as a product: exactly zero if a velocity is only reversed.
         let gain = |axis: usize| (disc.velocity[axis] - before[axis]) * (disc.velocity[axis] + before[axis]);
-        Bounce {
+        WallBounce {
             thrust: disc.mass * (disc.velocity[axis] - v).abs(),
             work: 0.5 * disc.mass * (gain(0) + gain(1)),
         }
     }
 }
 
-impl Thermal {
+impl ThermalWall {
     /// Draws a velocity, normal and tangential to the wall, from the flux of a gas at its temperature. It is a function of the seed,
     /// the number of the disc and its event count.
-    fn velocity(&self, disc: &Disc, number: u32) -> [f64; 2] {
-        let draw = |which: u64| normals(self.seed, Purpose::Wall, number, 2 * disc.events + which);
+    fn velocity(&self, disc: &FlyingDisc, number: u32) -> [f64; 2] {
+        let draw = |which: u64| normals(self.seed, RandomPurpose::Wall, number, 2 * disc.events + which);
         let ([a, b], [along, _]) = (draw(0), draw(1));
         let thermal = (self.temperature / disc.mass).sqrt();
         [thermal * (a * a + b * b).sqrt(), thermal * along]
@@ -266,28 +271,30 @@ mod tests {
     use super::*;
     use stripmine_kernels::flight::meeting;
 
-    fn disc(position: [f64; 2], velocity: [f64; 2]) -> Disc {
-        Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
+    fn disc(position: [f64; 2], velocity: [f64; 2]) -> FlyingDisc {
+        FlyingDisc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
     }
 
-    fn periodic(law: Law) -> Arena {
+    fn periodic(law: CollisionLaw) -> Arena {
         Arena::new(Domain::planar([0.0; 2], [20.0; 2], [true; 2]), [0.0; 2], law)
     }
 
     /// Energy and momentum are conserved; e < 1 takes (1 − e²) of the energy of the approach.
     #[test]
     fn collisions_conserve_momentum_and_balance_energy() {
-        let start =
-            [disc([5.0, 5.0], [1.0, 0.2]), Disc { mass: 3.0, radius: 0.7, ..disc([8.0, 5.5], [-1.0, 0.1]) }];
-        let energy = |discs: &[Disc; 2]| -> f64 {
+        let start = [
+            disc([5.0, 5.0], [1.0, 0.2]),
+            FlyingDisc { mass: 3.0, radius: 0.7, ..disc([8.0, 5.5], [-1.0, 0.1]) },
+        ];
+        let energy = |discs: &[FlyingDisc; 2]| -> f64 {
             discs.iter().map(|it| 0.5 * it.mass * it.velocity.iter().map(|v| v * v).sum::<f64>()).sum()
         };
-        let momentum = |discs: &[Disc; 2], axis: usize| -> f64 {
+        let momentum = |discs: &[FlyingDisc; 2], axis: usize| -> f64 {
             discs.iter().map(|it| it.mass * it.velocity[axis]).sum()
         };
         for restitution in [1.0, 0.5] {
-            let arena = periodic(Law { restitution, ..Law::ELASTIC });
-            let when = |[a, b]: &[Disc; 2]| meeting(&arena.space, a, b, 0.0, f64::INFINITY);
+            let arena = periodic(CollisionLaw { restitution, ..CollisionLaw::ELASTIC });
+            let when = |[a, b]: &[FlyingDisc; 2]| meeting(&arena.space, a, b, 0.0, f64::INFINITY);
             let mut after = start;
             let time = when(&start);
             let [a, b] = &mut after;
@@ -313,20 +320,23 @@ mod tests {
     #[test]
     fn flights_have_known_action_and_potential() {
         let domain = Domain::planar([0.0, 1.0], [20.0; 2], [true, false]);
-        let arena = Arena::new(domain, [0.0, -1.0], Law::ELASTIC);
-        let thrown = Disc { mass: 2.0, ..disc([5.0, 5.0], [1.0, 2.0]) };
+        let arena = Arena::new(domain, [0.0, -1.0], CollisionLaw::ELASTIC);
+        let thrown = FlyingDisc { mass: 2.0, ..disc([5.0, 5.0], [1.0, 2.0]) };
         assert!((arena.action(&thrown, 3.0) - 12.0).abs() < 1e-14);
         assert_eq!(arena.potential(&thrown, 3.0), 2.0 * (6.5 - 1.0));
-        let straight = periodic(Law { restitution: 0.5, ..Law::ELASTIC });
+        let straight = periodic(CollisionLaw { restitution: 0.5, ..CollisionLaw::ELASTIC });
         assert_eq!(straight.action(&thrown, 3.0), 2.0 * 5.0 * 3.0);
-        assert!(!arena.keeps_kinetic && !straight.keeps_kinetic && periodic(Law::ELASTIC).keeps_kinetic);
+        assert!(
+            !arena.keeps_kinetic && !straight.keeps_kinetic && periodic(CollisionLaw::ELASTIC).keeps_kinetic
+        );
     }
 
     #[test]
     fn contact_duration_makes_frequent_collisions_elastic() {
-        let arena = periodic(Law { restitution: 0.5, contact_duration: 0.1, ..Law::ELASTIC });
+        let arena =
+            periodic(CollisionLaw { restitution: 0.5, contact_duration: 0.1, ..CollisionLaw::ELASTIC });
         let made = |before: f64, events: u64| {
-            let mut a = Disc { time: -before, events, ..disc([5.0 - before, 5.0], [1.0, 0.0]) };
+            let mut a = FlyingDisc { time: -before, events, ..disc([5.0 - before, 5.0], [1.0, 0.0]) };
             let mut b = disc([6.0, 5.0], [-1.0, 0.0]);
             arena.collide(&mut a, &mut b, 0.0).was_made_elastic
         };
@@ -336,7 +346,8 @@ mod tests {
     #[test]
     fn walls_reflect_discs() {
         let domain = Domain::planar([1.0, 0.0], [10.0, 10.0], [false, true]);
-        let arena = Arena::new(domain, [0.0; 2], Law { wall_restitution: 0.5, ..Law::ELASTIC });
+        let arena =
+            Arena::new(domain, [0.0; 2], CollisionLaw { wall_restitution: 0.5, ..CollisionLaw::ELASTIC });
         let mut flying = disc([3.0, 5.0], [-0.5, 7.0]);
         assert_eq!(arena.wall(&flying), (3.0, 0));
         arena.rebound(&mut flying, 0, 0, 3.0);
@@ -349,7 +360,7 @@ mod tests {
     #[test]
     fn discs_fall_on_the_floor() {
         let domain = Domain::planar([0.0; 2], [10.0, 10.0], [true, false]);
-        let arena = Arena::new(domain, [0.0, -2.0], Law::ELASTIC);
+        let arena = Arena::new(domain, [0.0, -2.0], CollisionLaw::ELASTIC);
         let mut thrown = disc([5.0, 0.5], [0.0, 3.0]);
         assert_eq!(arena.wall(&thrown), (3.0, 1));
         arena.rebound(&mut thrown, 0, 1, 3.0);
@@ -364,13 +375,14 @@ mod tests {
     /// The normal velocity off a thermal wall has a mean square of 2 kT/m, the tangential one of kT/m.
     #[test]
     fn thermal_walls_emit_at_their_temperature() {
-        let thermal = Thermal { side: (1, false), temperature: 3.0, seed: 5 };
+        let thermal = ThermalWall { side: (1, false), temperature: 3.0, seed: 5 };
         let domain = Domain::planar([0.0; 2], [10.0, 10.0], [true, false]);
-        let arena = Arena::new(domain, [0.0; 2], Law { thermal: Some(thermal), ..Law::ELASTIC });
+        let arena =
+            Arena::new(domain, [0.0; 2], CollisionLaw { thermal: Some(thermal), ..CollisionLaw::ELASTIC });
         let samples = 20_000;
         let mut squares = [0.0; 2];
         for number in 0..samples {
-            let mut falling = Disc { mass: 2.0, ..disc([5.0, 0.5], [0.0, -1.0]) };
+            let mut falling = FlyingDisc { mass: 2.0, ..disc([5.0, 0.5], [0.0, -1.0]) };
             arena.rebound(&mut falling, number, 1, 0.0);
             assert!(falling.velocity[1] > 0.0);
             (0..2).for_each(|axis| squares[axis] += falling.velocity[axis].powi(2) / f64::from(samples));

@@ -1,25 +1,25 @@
 //! Messages of failures of hard discs.
 
 use super::engine::EngineError;
-use crate::method::{Clock, Culprit, Failure, FailureKind};
+use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
 use crate::particles::Particles;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 use stripmine_kernels::isa::ProgramError;
 
 /// Description of a disc in a failure.
-pub(super) fn culprit(number: u32, disc: &Disc, particles: &Particles, places: &[usize]) -> Culprit {
-    let Disc { position, velocity, .. } = *disc;
+pub(super) fn culprit(number: u32, disc: &FlyingDisc, particles: &Particles, places: &[usize]) -> Culprit {
+    let FlyingDisc { position, velocity, .. } = *disc;
     Culprit::in_plane("disc", particles.all()[places[number as usize]].id, position, velocity)
 }
 
 /// Converts an engine error to a failure that names the discs and the remedy.
 pub(super) fn failure(
     why: EngineError,
-    disc: &dyn Fn(u32) -> Disc,
+    disc: &dyn Fn(u32) -> FlyingDisc,
     particles: &Particles,
     places: &[usize],
     clock: Clock,
-) -> Failure {
+) -> PhysicsFailure {
     let named = |number: u32| culprit(number, &disc(number), particles, places);
     match why {
         EngineError::SharedCell(pair) => {
@@ -27,13 +27,13 @@ pub(super) fn failure(
             let message =
                 format!("{a} and {b} have their centres in one cell of the exclusive grid: they overlap");
             let remedy = "this is a bug: please report it with the scene";
-            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(2, [a, b])
+            PhysicsFailure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(2, [a, b])
         }
         EngineError::Crowded(disc, most) => {
             let who = named(disc);
             let message = format!("{who} has more than {most} neighbours, the most that a list can hold");
             let remedy = "set machine.engine = \"reference\", or use radii that differ less";
-            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
+            PhysicsFailure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
         EngineError::TooHigh(disc, entries) => {
             let who = named(disc);
@@ -41,14 +41,14 @@ pub(super) fn failure(
                 "{who} is so high above the floor that the cell look-up of the reference engine needs {entries} entries, which grow with the height"
             );
             let remedy = "set machine.engine = \"fast\", whose memory depends only on the number of discs";
-            Failure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
+            PhysicsFailure::new(FailureKind::CONFLICT, message, remedy).at(clock).of(1, [who])
         }
         EngineError::NoInstructions(set) => ProgramError::NoSuchInstructionSet(set.name()).into(),
         EngineError::BackInTime(disc, time, now) => {
             let who = named(disc);
             let message = format!("the next event of {who} is at {time:?}, before the last one at {now:?}");
             let remedy = "this is a bug, a mask missed a partner: please report it with the scene";
-            let failure = Failure::new(super::BACK_IN_TIME, message, remedy).at(clock).of(1, [who]);
+            let failure = PhysicsFailure::new(super::BACK_IN_TIME, message, remedy).at(clock).of(1, [who]);
             failure.with([("time", time), ("now", now)])
         }
     }

@@ -1,24 +1,24 @@
 //! Crossings of periodic sides, counted at each event: displacements across periodic sides.
 
 use super::event::Arena;
-use crate::io::checkpoint::Column;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::Crossings;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Crossing counts, and each disc in the state after its last event.
-pub(super) struct Followed {
+pub(super) struct CrossingCounter {
     crossings: Crossings,
-    before: Vec<Disc>,
+    before: Vec<FlyingDisc>,
 }
 
-impl Followed {
+impl CrossingCounter {
     /// Starts the counts at 0, for discs in the order of their numbers.
-    pub(super) fn new(arena: &Arena, discs: Vec<Disc>) -> Followed {
-        Followed { crossings: Crossings::new(arena.domain.periodic(), discs.len()), before: discs }
+    pub(super) fn new(arena: &Arena, discs: Vec<FlyingDisc>) -> CrossingCounter {
+        CrossingCounter { crossings: Crossings::new(arena.domain.periodic(), discs.len()), before: discs }
     }
 
     /// Counts the crossings of a disc up to its event, after which its state is `now`.
-    pub(super) fn see(&mut self, arena: &Arena, number: u32, now: &Disc) {
+    pub(super) fn see(&mut self, arena: &Arena, number: u32, now: &FlyingDisc) {
         let before = &mut self.before[number as usize];
         let beyond = arena.domain.periods(before.at(&arena.space, now.time));
         if beyond != [0.0; 2] {
@@ -38,7 +38,7 @@ impl Followed {
     }
 
     /// The counts by name, for a checkpoint.
-    pub(super) fn columns(&self) -> impl Iterator<Item = (String, Column)> {
+    pub(super) fn columns(&self) -> impl Iterator<Item = (String, CheckpointColumn)> {
         self.crossings.columns()
     }
 
@@ -46,8 +46,12 @@ impl Followed {
     ///
     /// # Errors
     /// A message if a column does not hold the counts of these discs.
-    pub(super) fn take_up(&mut self, discs: &[Disc], columns: &[(String, Column)]) -> Result<(), String> {
-        let mut columns: Vec<(String, Column)> = Crossings::among(columns).cloned().collect();
+    pub(super) fn take_up(
+        &mut self,
+        discs: &[FlyingDisc],
+        columns: &[(String, CheckpointColumn)],
+    ) -> Result<(), String> {
+        let mut columns: Vec<(String, CheckpointColumn)> = Crossings::among(columns).cloned().collect();
         Crossings::begin_in(&mut columns, discs.len());
         self.crossings.take_up(&columns)?;
         self.before.copy_from_slice(discs);

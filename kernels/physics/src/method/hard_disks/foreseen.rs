@@ -1,12 +1,12 @@
 //! Cost forecast of a run of hard discs: collisions per time, and the number of rows and frames.
 
-use super::checked::Checked;
+use super::checked::CheckedHardDisks;
 use super::keys::{CHECKPOINT_EVERY, EVENTS, MOST_EVENTS, SNAPSHOT_EVERY, THERMO_EVERY, TIME};
 use super::options::EngineChoice;
 use crate::method::{Every, Until};
 use crate::number::significant;
 use crate::particles::Particle;
-use crate::scene::{Reason, SceneError, Values};
+use crate::scene::{MistakeKind, SceneError, SceneValues};
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 /// Maximum number of rows, snapshots or checkpoints of a run.
@@ -23,7 +23,7 @@ const COLLISION: [(f64, [f64; 2]); 5] = [
 ];
 
 /// Nanoseconds per collision in a scene.
-pub(super) fn nanoseconds_of_a_collision(checked: &Checked) -> f64 {
+pub(super) fn nanoseconds_of_a_collision(checked: &CheckedHardDisks) -> f64 {
     of_a_collision(checked.packing_fraction(), checked.scene.engine)
 }
 
@@ -42,7 +42,7 @@ fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
 }
 
 /// Enskog's collision rate per disc, each collision counted once for the pair, at a thermal speed √(kT/m).
-pub(super) fn enskog(checked: &Checked, speed: f64) -> f64 {
+pub(super) fn enskog(checked: &CheckedHardDisks, speed: f64) -> f64 {
     let count = checked.particles.len() as f64;
     let [x, y] = checked.domain.lengths();
     let diameter = 2.0 * mean(checked, |disc| disc.radius);
@@ -53,7 +53,7 @@ pub(super) fn enskog(checked: &Checked, speed: f64) -> f64 {
 }
 
 /// Thermal speed √(kT/m) of the discs at the start (length/time).
-pub(super) fn thermal_speed(checked: &Checked) -> f64 {
+pub(super) fn thermal_speed(checked: &CheckedHardDisks) -> f64 {
     let largest = checked.particles.all().iter().map(speed_of).fold(0.0, f64::max);
     if largest == 0.0 {
         return 0.0;
@@ -67,13 +67,13 @@ fn speed_of(disc: &Particle) -> f64 {
     x.hypot(y)
 }
 
-fn mean(checked: &Checked, of: impl Fn(&Particle) -> f64) -> f64 {
+fn mean(checked: &CheckedHardDisks, of: impl Fn(&Particle) -> f64) -> f64 {
     let discs = checked.particles.all();
     discs.iter().map(of).sum::<f64>() / discs.len() as f64
 }
 
 /// Rate of all collisions, of pairs and at sides, at the speeds due to the start, gravity, a thermal side and a floor.
-fn rate(checked: &Checked) -> f64 {
+fn rate(checked: &CheckedHardDisks) -> f64 {
     let (scene, domain) = (&checked.scene, &checked.domain);
     let fall = |axis: usize| (scene.domain.gravity[axis].abs() * domain.length(axis)).sqrt();
     let heated = |temperature: f64| temperature.sqrt() / mean(checked, |disc| disc.mass).sqrt();
@@ -86,9 +86,9 @@ fn rate(checked: &Checked) -> f64 {
     (enskog(checked, speed) + at_sides.sum::<f64>()) * checked.particles.len() as f64
 }
 
-impl Checked {
+impl CheckedHardDisks {
     /// Error for a run that could never finish: too many collisions, rows, snapshots or checkpoints.
-    pub(super) fn endless(&self, values: &Values) -> Option<SceneError> {
+    pub(super) fn endless(&self, values: &SceneValues) -> Option<SceneError> {
         let (run, rate) = (&self.scene.run, rate(self));
         let number = |value: f64| significant(value, 3);
         let duration = match run.until {
@@ -100,7 +100,7 @@ impl Checked {
                         number(time),
                         number(time * rate)
                     );
-                    let error = values.spot(&TIME).error(Reason::Range, message);
+                    let error = values.spot(&TIME).error(MistakeKind::Range, message);
                     return Some(error.expecting(format!(
                         "a time of at most {}, for {} collisions",
                         number(MOST_EVENTS as f64 / rate),
@@ -132,7 +132,7 @@ impl Checked {
                     number(every),
                     number(duration / every)
                 );
-                let error = values.spot(key).error(Reason::Range, message);
+                let error = values.spot(key).error(MistakeKind::Range, message);
                 error.expecting(format!("0 for none, or at least {}", number(duration / MOST_WRITTEN)))
             })
         })

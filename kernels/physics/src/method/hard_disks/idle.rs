@@ -1,7 +1,7 @@
 //! Proof that no event will ever happen, for the cases in which it is possible.
 
 use super::event::Arena;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Largest number of discs whose pairs are all checked. With more discs events are assumed possible.
 const MOST: usize = 4096;
@@ -9,7 +9,7 @@ const MOST: usize = 4096;
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
 /// True if certainly no disc will ever meet another disc or a side. False if an event is possible or the proof fails.
-pub(super) fn never(arena: &Arena, discs: &[Disc]) -> bool {
+pub(super) fn never(arena: &Arena, discs: &[FlyingDisc]) -> bool {
     if discs.iter().any(|disc| arena.wall(disc).0 < f64::INFINITY) {
         return false;
     }
@@ -23,7 +23,7 @@ pub(super) fn never(arena: &Arena, discs: &[Disc]) -> bool {
 
 /// True if two discs that fly straight along periodic sides miss each other and all images. Relative to one disc, the images of the
 /// other fly on parallel lines. The distance of these lines is the greatest common measure of the sides' components across the motion.
-fn pass(arena: &Arena, a: &Disc, b: &Disc) -> bool {
+fn pass(arena: &Arena, a: &FlyingDisc, b: &FlyingDisc) -> bool {
     let [u, v] = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
     if [u, v] == [0.0; 2] {
         return true;
@@ -52,12 +52,12 @@ fn common_measure(mut a: f64, mut b: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::event::Law;
+    use super::super::event::CollisionLaw;
     use super::*;
     use crate::domain::Domain;
 
-    fn disc(position: [f64; 2], velocity: [f64; 2]) -> Disc {
-        Disc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
+    fn disc(position: [f64; 2], velocity: [f64; 2]) -> FlyingDisc {
+        FlyingDisc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
     }
 
     /// Calculated by hand: discs at rest, alone, side by side, passing on straight and slanted lines, and pairs that may meet.
@@ -81,11 +81,12 @@ mod tests {
             (closed, disc([5.0, 5.0], [1.0, 1e-9]), false),
         ] {
             let domain = Domain::planar([0.0; 2], [10.0; 2], periodic);
-            let arena = Arena::new(domain, [0.0; 2], Law::ELASTIC);
+            let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
             assert_eq!(never(&arena, &[here, other]), is_never, "{other:?}");
             assert!(never(&arena, &[disc([5.0; 2], [1.0, 0.0])]));
         }
-        let falling = Arena::new(Domain::planar([0.0; 2], [10.0; 2], closed), [0.0, -1.0], Law::ELASTIC);
+        let falling =
+            Arena::new(Domain::planar([0.0; 2], [10.0; 2], closed), [0.0, -1.0], CollisionLaw::ELASTIC);
         assert!(!never(&falling, &[here]));
     }
 }

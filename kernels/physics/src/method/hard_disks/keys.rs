@@ -1,13 +1,13 @@
 //! Keys of this method, and their constraints on each other.
 
 use super::options::EngineChoice;
-use crate::scene::Bounds::{AtMost, NonNegative, Positive};
 use crate::scene::Fallback::{Is, Otherwise};
-use crate::scene::Kind::{Choice, Number, Switch, Whole};
+use crate::scene::KeyValueKind::{Choice, Number, Switch, Whole};
+use crate::scene::NumberRange::{AtMost, NonNegative, Positive};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    DISC_RIVALS, DISCS, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC, PLANAR_DOMAIN, Reason,
-    Rivals, SUMMED, SceneError, TARGETED, Use, Value, Values, Vocabulary, disagreements,
+    DISC_RIVALS, DISCS, ExclusiveKeys, GRAVITY, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT,
+    PERIODIC, PLANAR_DOMAIN, SUMMED, SceneError, SceneValues, TARGETED, Use, Vocabulary, disagreements,
 };
 use crate::words::Words;
 
@@ -67,7 +67,7 @@ define_keys! {
 }
 
 /// Alternative durations of a run: a number of events, or a time.
-static DURATION: &[Rivals] = &[Rivals { keys: &[&EVENTS, &TIME], used: ALWAYS, needed: true }];
+static DURATION: &[ExclusiveKeys] = &[ExclusiveKeys { keys: &[&EVENTS, &TIME], used: ALWAYS, needed: true }];
 
 /// Vocabulary of the scenes of this method.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
@@ -106,48 +106,49 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
 };
 
 /// Checks the keys that depend on each other.
-fn own_rules(values: &Values) -> Vec<SceneError> {
+fn own_rules(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = vec![];
     let periodic = match values.value(&PERIODIC) {
-        Some(Value::Switches(periodic)) => periodic,
+        Some(KeyValue::Switches(periodic)) => periodic,
         _ => [true; 2],
     };
     let gravity = match values.value(&GRAVITY) {
-        Some(Value::Pair(gravity)) => gravity,
+        Some(KeyValue::Pair(gravity)) => gravity,
         _ => [0.0; 2],
     };
     for axis in (0..2).filter(|&axis| periodic[axis] && gravity[axis] != 0.0) {
         let message = format!("gravity = {gravity:?}, but nothing stops the fall across a periodic side");
-        let error = values.spot(&GRAVITY).error(Reason::Contradiction, message);
+        let error = values.spot(&GRAVITY).error(MistakeKind::Contradiction, message);
         errors.push(error.advising(match axis {
             0 => "close the first side: periodic = [false, …]",
             _ => "close the second side: periodic = [true, false]",
         }));
     }
-    if values.value(&OPEN_TOP) == Some(Value::Switch(true)) && (periodic[1] || gravity[1] >= 0.0) {
+    if values.value(&OPEN_TOP) == Some(KeyValue::Switch(true)) && (periodic[1] || gravity[1] >= 0.0) {
         let message = "`domain.open_top` needs a floor and gravity that points down";
-        let error = values.spot(&OPEN_TOP).error(Reason::Contradiction, message.to_owned());
+        let error = values.spot(&OPEN_TOP).error(MistakeKind::Contradiction, message.to_owned());
         errors.push(error.expecting("periodic = [true, false] and gravity = [0.0, -1.0], for example"));
     }
-    let shaken = matches!(values.value(&FLOOR_AMPLITUDE), Some(Value::Number(amplitude)) if amplitude > 0.0);
+    let shaken =
+        matches!(values.value(&FLOOR_AMPLITUDE), Some(KeyValue::Number(amplitude)) if amplitude > 0.0);
     if shaken && periodic[1] {
         let message = "`law.floor_amplitude` needs a floor, but the second side is periodic".to_owned();
-        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Contradiction, message);
+        let error = values.spot(&FLOOR_AMPLITUDE).error(MistakeKind::Contradiction, message);
         errors.push(error.expecting("periodic = [true, false], for example"));
     }
     let heated = match values.value(&THERMAL_SIDE) {
-        Some(Value::Word(side)) => side,
+        Some(KeyValue::Word(side)) => side,
         _ => String::new(),
     };
     if shaken && heated == "bottom" {
         let message =
             "the floor is both thermal (`law.thermal_side`) and moving (`law.floor_amplitude`)".to_owned();
-        let error = values.spot(&FLOOR_AMPLITUDE).error(Reason::Contradiction, message);
+        let error = values.spot(&FLOOR_AMPLITUDE).error(MistakeKind::Contradiction, message);
         errors.push(error.advising("remove one of the two"));
     }
     if let Some((axis, _)) = side(&heated).filter(|(axis, _)| periodic[*axis]) {
         let message = format!("`law.thermal_side` is \"{heated}\", but that side is periodic");
-        let error = values.spot(&THERMAL_SIDE).error(Reason::Contradiction, message);
+        let error = values.spot(&THERMAL_SIDE).error(MistakeKind::Contradiction, message);
         errors.push(error.advising(match axis {
             0 => "close the first side: periodic = [false, …]",
             _ => "close the second side: periodic = [true, false]",

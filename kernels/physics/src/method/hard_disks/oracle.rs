@@ -1,28 +1,28 @@
 //! Oracle for all engines: brute-force search over all pairs and walls for each event.
 
-use super::engine::{Engine, Occurred, Partner};
-use super::event::{Arena, Law, Thermal};
+use super::engine::{EventEngine, EventPartner, ExecutedEvent};
+use super::event::{Arena, CollisionLaw, ThermalWall};
 use super::fast::{Fast, displacement_limit};
 use super::floor::Floor;
 use super::reference;
-use crate::domain::{Domain, Side};
+use crate::domain::{BoxSide, Domain};
 use rand::RngExt;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::flight::{Disc, meeting};
+use stripmine_kernels::flight::{FlyingDisc, meeting};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 
 /// Executes the next event, found among all pairs and walls.
-fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
+fn naive(arena: &Arena, discs: &mut [FlyingDisc], now: f64) -> ExecutedEvent {
     let count = discs.len() as u32;
-    let mut next = (f64::INFINITY, 0, Partner::Wall(0));
+    let mut next = (f64::INFINITY, 0, EventPartner::Wall(0));
     for a in 0..count {
         let (time, axis) = arena.wall(&discs[a as usize]);
         let meetings = (0..count).filter(|&b| b != a).map(|b| {
             let [one, other] = [a, b].map(|disc| &discs[disc as usize]);
-            (meeting(&arena.space, one, other, now, f64::INFINITY), Partner::Disc(b))
+            (meeting(&arena.space, one, other, now, f64::INFINITY), EventPartner::Disc(b))
         });
-        let all = meetings.chain([(time, Partner::Wall(axis as u8))]);
+        let all = meetings.chain([(time, EventPartner::Wall(axis as u8))]);
         for (time, with) in all {
             if (time, a, with) < next {
                 next = (time, a, with);
@@ -31,11 +31,13 @@ fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
     }
     let (time, first, with) = next;
     match with {
-        Partner::Wall(axis) => Occurred::at_wall(arena, (first, &mut discs[first as usize]), axis, time),
-        Partner::Disc(other) => {
+        EventPartner::Wall(axis) => {
+            ExecutedEvent::at_wall(arena, (first, &mut discs[first as usize]), axis, time)
+        }
+        EventPartner::Disc(other) => {
             let [a, b] = [first.min(other), first.max(other)];
             let (left, right) = discs.split_at_mut(b as usize);
-            Occurred::collision(arena, (a, &mut left[a as usize]), (b, &mut right[0]), time)
+            ExecutedEvent::collision(arena, (a, &mut left[a as usize]), (b, &mut right[0]), time)
         }
     }
 }
@@ -44,9 +46,9 @@ fn naive(arena: &Arena, discs: &mut [Disc], now: f64) -> Occurred {
 const HEIGHT: f64 = 20.0;
 
 /// Discs at random positions with random velocities; radii and masses differ by up to `spread`.
-fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
-    let mut stream = Stream::new(seed, Purpose::Test, 1);
-    let mut discs: Vec<Disc> = vec![];
+fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<FlyingDisc> {
+    let mut stream = Stream::new(seed, RandomPurpose::Test, 1);
+    let mut discs: Vec<FlyingDisc> = vec![];
     while discs.len() < count {
         let radius = 0.5 * (1.0 + spread * stream.random_range(0.0..1.0));
         let position = [0, 1].map(|axis| {
@@ -57,15 +59,15 @@ fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<Disc> {
         if discs.iter().all(|it| domain.distance(it.position, position) > radius + it.radius) {
             let velocity = [0, 1].map(|_| stream.random_range(-1.0..1.0));
             let mass = 4.0 * radius * radius;
-            discs.push(Disc { position, velocity, time: 0.0, radius, mass, events: 0 });
+            discs.push(FlyingDisc { position, velocity, time: 0.0, radius, mass, events: 0 });
         }
     }
     discs
 }
 
 /// Reference engines with several masks, and fast engines with every instruction set.
-fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
-    let mut engines: Vec<(String, Box<dyn Engine>)> = vec![];
+fn engines(arena: Arena, discs: &[FlyingDisc]) -> Vec<(String, Box<dyn EventEngine>)> {
+    let mut engines: Vec<(String, Box<dyn EventEngine>)> = vec![];
     for mask in [Mask::square(2), Mask::round(3), Mask::round(4)] {
         let name = format!("{} offsets", mask.offsets().len());
         engines.push((name, reference::begin(arena, discs.to_vec(), &mask, 0.0).unwrap()));
@@ -80,9 +82,9 @@ fn engines(arena: Arena, discs: &[Disc]) -> Vec<(String, Box<dyn Engine>)> {
 }
 
 /// Compares all engines with the oracle: every event, and every disc at the end. Returns the number of fast engines.
-fn hold(arena: Arena, discs: &[Disc], events: usize) -> usize {
+fn hold(arena: Arena, discs: &[FlyingDisc], events: usize) -> usize {
     let (mut oracle, mut now) = (discs.to_vec(), 0.0);
-    let events: Vec<Occurred> = (0..events)
+    let events: Vec<ExecutedEvent> = (0..events)
         .map(|_| {
             let event = naive(&arena, &mut oracle, now);
             now = event.time;
@@ -109,7 +111,7 @@ fn engines_match_the_oracle() {
     let mut fast = 0;
     for (seed, periodic) in [[true, true], [true, false], [false, false]].into_iter().enumerate() {
         for (spread, restitution) in [(0.0, 1.0), (0.1, 0.9)] {
-            let law = Law { restitution, ..Law::ELASTIC };
+            let law = CollisionLaw { restitution, ..CollisionLaw::ELASTIC };
             for (sides, count) in [([9.0, 8.0], 30), ([14.0, 13.0], 40)] {
                 let domain = Domain::planar([-2.0, 1.0], sides, periodic);
                 let gravity = if periodic[1] { [0.0; 2] } else { [0.0, -0.3] };
@@ -126,9 +128,14 @@ fn engines_match_the_oracle() {
 /// A vibrating floor, with a ceiling and without.
 #[test]
 fn engines_match_above_a_vibrating_floor() {
-    let open = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
+    let open = Domain { origin: [0.0; 3], sides: [BoxSide::Periodic(14.0), BoxSide::Open, BoxSide::Flat] };
     let floor = Floor { amplitude: 0.3, frequency: 0.7 };
-    let law = Law { restitution: 0.95, wall_restitution: 0.9, floor: Some(floor), ..Law::ELASTIC };
+    let law = CollisionLaw {
+        restitution: 0.95,
+        wall_restitution: 0.9,
+        floor: Some(floor),
+        ..CollisionLaw::ELASTIC
+    };
     for domain in [open, Domain::planar([0.0; 2], [14.0, 16.0], [true, false])] {
         let discs = random(&domain, 50, 0.2, 9);
         assert!(hold(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
@@ -138,9 +145,9 @@ fn engines_match_above_a_vibrating_floor() {
 /// A thermal floor without a ceiling.
 #[test]
 fn engines_match_above_a_thermal_floor() {
-    let domain = Domain { origin: [0.0; 3], sides: [Side::Periodic(14.0), Side::Open, Side::Flat] };
-    let thermal = Thermal { side: (1, false), temperature: 2.0, seed: 4 };
-    let law = Law { restitution: 0.95, thermal: Some(thermal), ..Law::ELASTIC };
+    let domain = Domain { origin: [0.0; 3], sides: [BoxSide::Periodic(14.0), BoxSide::Open, BoxSide::Flat] };
+    let thermal = ThermalWall { side: (1, false), temperature: 2.0, seed: 4 };
+    let law = CollisionLaw { restitution: 0.95, thermal: Some(thermal), ..CollisionLaw::ELASTIC };
     let discs = random(&domain, 60, 0.2, 9);
     assert!(hold(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
 }
@@ -149,7 +156,7 @@ fn engines_match_above_a_thermal_floor() {
 #[test]
 fn simultaneous_events_are_ordered_by_number() {
     let domain = Domain::planar([0.0; 2], [24.0; 2], [true; 2]);
-    let disc = |number: u32| Disc {
+    let disc = |number: u32| FlyingDisc {
         position: [f64::from(number % 6) * 4.0 + 2.0, f64::from(number / 6) * 4.0 + 2.0],
         velocity: [if number.is_multiple_of(2) { 1.0 } else { -1.0 }, 0.0],
         time: 0.0,
@@ -158,8 +165,8 @@ fn simultaneous_events_are_ordered_by_number() {
         events: 0,
     };
     // Shuffled, so that the order of the numbers differs from that of the positions.
-    let discs: Vec<Disc> = (0..36).map(|number| disc(number * 23 % 36)).collect();
-    assert!(hold(Arena::new(domain, [0.0; 2], Law::ELASTIC), &discs, 300) > 0);
+    let discs: Vec<FlyingDisc> = (0..36).map(|number| disc(number * 23 % 36)).collect();
+    assert!(hold(Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC), &discs, 300) > 0);
 }
 
 /// 10⁵ collisions of 200 discs: energy and momentum are conserved to rounding, no discs overlap, and both engines agree to the end.
@@ -167,9 +174,10 @@ fn simultaneous_events_are_ordered_by_number() {
 fn engines_conserve_energy_and_momentum() {
     let domain = Domain::planar([0.0; 2], [19.0, 18.0], [true; 2]);
     let discs = random(&domain, 200, 0.1, 5);
-    let arena = Arena::new(domain, [0.0; 2], Law::ELASTIC);
-    let energy = |discs: &[Disc]| -> f64 { discs.iter().map(|it| 0.5 * it.mass * it.speed().powi(2)).sum() };
-    let momentum = |discs: &[Disc]| -> f64 { discs.iter().map(|it| it.mass * it.velocity[0]).sum() };
+    let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
+    let energy =
+        |discs: &[FlyingDisc]| -> f64 { discs.iter().map(|it| 0.5 * it.mass * it.speed().powi(2)).sum() };
+    let momentum = |discs: &[FlyingDisc]| -> f64 { discs.iter().map(|it| it.mass * it.velocity[0]).sum() };
     let before = [energy(&discs), momentum(&discs)];
     let mut source = reference::begin(arena, discs.clone(), &Mask::square(2), 0.0).unwrap();
     let mut fast = Fast::new(arena, discs, InstructionSet::best(), 0.0).unwrap();
@@ -182,7 +190,7 @@ fn engines_conserve_energy_and_momentum() {
         assert_eq!(one, other, "event {number}");
         time = one.time;
     }
-    let after: Vec<Disc> = (0..fast.count() as u32).map(|number| *fast.disc(number)).collect();
+    let after: Vec<FlyingDisc> = (0..fast.count() as u32).map(|number| *fast.disc(number)).collect();
     assert!((energy(&after) / before[0] - 1.0).abs() < 1e-12 && (momentum(&after) - before[1]).abs() < 1e-11);
     for (number, a) in after.iter().enumerate() {
         for b in &after[number + 1..] {
@@ -204,8 +212,12 @@ fn engines_agree_over_a_million_events() {
         (domain(40.0, [true, false]), 0.2, 0.999, [0.0, -0.05]),
     ];
     for (domain, spread, restitution, gravity) in cases {
-        let thermal = Thermal { side: (1, false), temperature: 1.0, seed: 2 };
-        let law = Law { restitution, thermal: (gravity != [0.0; 2]).then_some(thermal), ..Law::ELASTIC };
+        let thermal = ThermalWall { side: (1, false), temperature: 1.0, seed: 2 };
+        let law = CollisionLaw {
+            restitution,
+            thermal: (gravity != [0.0; 2]).then_some(thermal),
+            ..CollisionLaw::ELASTIC
+        };
         let arena = Arena::new(domain, gravity, law);
         let discs = random(&domain, 400, spread, 8);
         let mut source = reference::begin(arena, discs.clone(), &Mask::round(3), 0.0).unwrap();

@@ -1,23 +1,23 @@
 //! Prepared scene of hard discs: facts, memory forecast, settings and the start of a simulation.
 
-use super::checked::Checked;
+use super::checked::CheckedHardDisks;
 use super::collision_log::COLUMNS;
 use super::foreseen::{enskog, nanoseconds_of_a_collision, thermal_speed};
-use super::reference::grid::Sizes;
-use super::simulation::{Observed, Running};
-use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
+use super::reference::grid::ExclusiveGridSize;
+use super::simulation::{HardDiskSimulation, RecordOptions};
+use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
 use crate::method::refuse_several_ranks;
-use crate::method::{Fact, Failure, Prepared, Purpose, Simulation, Startable};
+use crate::method::{Fact, PhysicsFailure, Prepared, Simulation, StartPurpose, Startable};
 use crate::number::significant;
-use crate::particles::{Kind, Particle, Particles};
+use crate::particles::{Particle, ParticleKind, Particles};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::sync::Arc;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
-impl Checked {
+impl CheckedHardDisks {
     /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let scene = &self.scene;
@@ -79,7 +79,7 @@ impl Checked {
             facts.push(Fact::new("noise_seed", seed, "seed of the thermal side", format!("{seed}{state}")));
         }
         if let Some(mask) = &self.mask {
-            let [columns, rows] = Sizes::new(&self.domain, low).cells;
+            let [columns, rows] = ExclusiveGridSize::new(&self.domain, low).cells;
             let cells = format!("{columns} × {rows} = {}", columns * rows);
             facts.push(Fact::new("cells", columns * rows, "cells", cells));
             let places = format!("{}, {} offsets", self.scene.mask, mask.offsets().len());
@@ -88,11 +88,12 @@ impl Checked {
         facts
     }
 
-    fn memory(&self) -> Foreseen {
+    fn memory(&self) -> MemoryForecast {
         let discs = self.particles.len() as f64;
         let of_engine = match &self.mask {
             Some(mask) => {
-                let sizes = Sizes::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
+                let sizes =
+                    ExclusiveGridSize::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
                 let margin = 2 * mask.half_width() as usize;
                 let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
                 // Event, node, cell and position per disc; the peak is lower than with lists, because nothing is sorted (measured).
@@ -103,18 +104,18 @@ impl Checked {
         };
         // Each disc in the state after its last event, and two counts.
         let followed = match self.scene.output.follows_motion() {
-            true => (size_of::<Disc>() + 2 * size_of::<f64>()) as f64,
+            true => (size_of::<FlyingDisc>() + 2 * size_of::<f64>()) as f64,
             false => 0.0,
         };
         // The disc; its particle in the scene, which the simulation shares; a copy in the current state on resumption; two frames, one being
         // built and one being written; and the written text.
-        let disc = size_of::<Disc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0 + followed;
-        Foreseen {
+        let disc = size_of::<FlyingDisc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0 + followed;
+        MemoryForecast {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
             what: format!("{} hard discs", self.particles.len()),
             remedy: "use fewer discs",
-            ranks: OfRanks::default(),
+            ranks: RankMemory::default(),
         }
     }
 
@@ -131,7 +132,7 @@ impl Checked {
     }
 }
 
-impl Startable for Checked {
+impl Startable for CheckedHardDisks {
     fn particles(&self) -> &Particles {
         &self.particles
     }
@@ -148,19 +149,19 @@ impl Startable for Checked {
         true
     }
 
-    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+    fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         refuse_several_ranks("the events of hard discs are executed in sequence, wherever they occur")?;
-        let is_run = purpose == Purpose::Run;
-        let observed = Observed {
+        let is_run = purpose == StartPurpose::Run;
+        let observed = RecordOptions {
             logs: is_run && self.scene.collision_log,
             follows: is_run && self.scene.output.follows_motion(),
         };
-        Ok(Box::new(Running::new(self, observed)?))
+        Ok(Box::new(HardDiskSimulation::new(self, observed)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {
-        debug_assert!(particles.all().iter().all(|disc| disc.kind == Kind::Grain));
-        Checked { particles: Arc::new(particles), ..self.clone() }.prepared()
+        debug_assert!(particles.all().iter().all(|disc| disc.kind == ParticleKind::Grain));
+        CheckedHardDisks { particles: Arc::new(particles), ..self.clone() }.prepared()
     }
 
     fn period(&self) -> Option<f64> {

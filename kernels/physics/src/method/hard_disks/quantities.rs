@@ -1,12 +1,12 @@
 //! Observables of hard discs: one list of quantities, each with its definition.
 
-use crate::method::Kind::{Counter, Instant, Interval, Kept, Time};
+use crate::method::QuantityKind::{Counter, Instant, Interval, Kept, Time};
 use crate::method::observed::observables;
-use crate::method::{Clock, Observable, Quantity, quantities};
+use crate::method::{Clock, MethodObservable, ObservedQuantity, quantities};
 
 /// Observation of the system at a moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct HardDiskObservation {
     /// Time and number of events.
     pub(super) clock: Clock,
     /// Collisions of pairs.
@@ -23,7 +23,7 @@ pub(super) struct Seen {
 }
 
 /// Observables, in the order of the columns.
-pub(super) const OBSERVABLES: [Observable<Seen>; 13] = observables! {
+pub(super) const OBSERVABLES: [MethodObservable<HardDiskObservation>; 13] = observables! {
     "time", "time", Time, |seen| seen.clock.time, "Time.";
     "events", "", Counter, |seen| seen.clock.events as f64, "Collisions since the start, of pairs and at walls.";
     "collisions", "", Counter, |seen| seen.collisions as f64, "Collisions of pairs since the start.";
@@ -40,4 +40,4 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 13] = observables! {
 };
 
 /// Names, units and meanings of the observables.
-pub(crate) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);
+pub(crate) const QUANTITIES: &[ObservedQuantity] = &quantities(&OBSERVABLES);

@@ -1,11 +1,11 @@
 //! Plausibility check of restored discs: an impossible state would cause infinitely many events.
 
 use super::event::Arena;
-use crate::domain::Side;
+use crate::domain::BoxSide;
 use crate::method::Clock;
-use crate::near::Near;
+use crate::near::NeighbourSearch;
 use crate::particles::{Particle, Particles};
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Largest overlap, of discs or with the box, as a fraction of a radius: many times the rounding of any run.
 const ROUNDING: f64 = 1e-6;
@@ -16,7 +16,12 @@ const MOST_ENERGY: f64 = 1e4;
 ///
 /// # Errors
 /// A message that names the first violation.
-pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Clock) -> Result<(), String> {
+pub(super) fn sound(
+    arena: &Arena,
+    start: &Particles,
+    discs: &[FlyingDisc],
+    clock: &Clock,
+) -> Result<(), String> {
     let now = clock.time;
     if let Some(disc) = discs.iter().find(|disc| !(0.0..=now).contains(&disc.time)) {
         return Err(format!(
@@ -40,7 +45,7 @@ pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Cl
         ));
     }
     let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-    let near = Near::among(arena.domain, places.iter().copied(), 2.0 * largest);
+    let near = NeighbourSearch::among(arena.domain, places.iter().copied(), 2.0 * largest);
     for (number, (disc, place)) in (0u32..).zip(discs.iter().zip(&places)) {
         let overlaps = |(other, there): (u32, [f64; 2])| {
             let apart = disc.radius + discs[other as usize].radius;
@@ -53,15 +58,15 @@ pub(super) fn sound(arena: &Arena, start: &Particles, discs: &[Disc], clock: &Cl
     Ok(())
 }
 
-fn is_inside(arena: &Arena, disc: &Disc, place: [f64; 2]) -> bool {
+fn is_inside(arena: &Arena, disc: &FlyingDisc, place: [f64; 2]) -> bool {
     let least = (1.0 - ROUNDING) * disc.radius;
     (0..2).all(|axis| {
         let above = place[axis] - arena.domain.origin[axis];
         match arena.domain.sides[axis] {
-            Side::Periodic(side) => (0.0..side).contains(&above),
-            Side::Closed(side) => (least..=side - least).contains(&above),
-            Side::Open => above >= least,
-            Side::Flat => true,
+            BoxSide::Periodic(side) => (0.0..side).contains(&above),
+            BoxSide::Closed(side) => (least..=side - least).contains(&above),
+            BoxSide::Open => above >= least,
+            BoxSide::Flat => true,
         }
     })
 }

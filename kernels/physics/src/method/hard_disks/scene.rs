@@ -1,27 +1,28 @@
 //! Scene of hard discs as plain data.
 
-use super::event::{Arena, Law, Thermal};
+use super::event::{Arena, CollisionLaw, ThermalWall};
 use super::floor::Floor;
 use super::keys::*;
 use super::options::EngineChoice;
-use crate::domain::Side;
+use crate::domain::BoxSide;
 use crate::method::{Every, Schedule, Until};
 use crate::scene::{
-    Binding, Domain, Output, Start, TARGET, Target, WallMotion, Write, bind_heading, bind_instructions,
+    Binding, DiscStart, MeanTarget, Output, SceneDomain, TARGET, WallMotion, Write, bind_heading,
+    bind_instructions,
 };
 use stripmine_kernels::InstructionSet;
 
 /// Scene of the method, in its own units; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Scene {
+pub(super) struct HardDiskScene {
     /// Label of the unit system.
     pub units: String,
     /// The box.
-    pub domain: Domain,
+    pub domain: SceneDomain,
     /// Discs at the start.
-    pub start: Start,
+    pub start: DiscStart,
     /// Collision law.
-    pub law: Law,
+    pub law: CollisionLaw,
     /// Seed of the thermal side, if it differs from that of the start.
     pub(crate) noise_seed: Option<u64>,
     /// True without a ceiling.
@@ -33,7 +34,7 @@ pub(super) struct Scene {
     /// Name of the mask.
     pub mask: String,
     /// Duration and output intervals.
-    pub run: Run,
+    pub run: HardDiskRun,
     /// Output files.
     pub output: Output,
     /// True if every collision is written.
@@ -42,11 +43,11 @@ pub(super) struct Scene {
 
 /// Duration and output intervals of a run (time; 0 is never).
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub(super) struct HardDiskRun {
     /// End of the run.
     pub until: Until,
     /// Target error of a mean, which ends the run early.
-    pub target: Option<Target>,
+    pub target: Option<MeanTarget>,
     /// Time between rows of observables.
     pub(crate) thermo_every: f64,
     /// Time between snapshots.
@@ -55,19 +56,19 @@ pub(super) struct Run {
     pub(crate) checkpoint_every: Option<f64>,
 }
 
-impl Default for Scene {
+impl Default for HardDiskScene {
     fn default() -> Self {
-        Scene {
+        HardDiskScene {
             units: String::new(),
-            domain: Domain::default(),
-            start: Start::default(),
-            law: Law::ELASTIC,
+            domain: SceneDomain::default(),
+            start: DiscStart::default(),
+            law: CollisionLaw::ELASTIC,
             noise_seed: None,
             open_top: false,
             engine: EngineChoice::default(),
             instruction_set: None,
             mask: String::new(),
-            run: Run {
+            run: HardDiskRun {
                 until: Until::Events(0),
                 target: None,
                 thermo_every: 0.0,
@@ -80,7 +81,7 @@ impl Default for Scene {
     }
 }
 
-impl Run {
+impl HardDiskRun {
     fn bind(&mut self, binding: &mut dyn Binding) {
         let mut time = match self.until {
             Until::Time(time) => Some(time),
@@ -112,7 +113,7 @@ impl Run {
     }
 }
 
-impl Scene {
+impl HardDiskScene {
     /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
@@ -137,7 +138,7 @@ impl Scene {
     pub(super) fn arena(&self, domain: crate::domain::Domain) -> Arena {
         let mut arena = Arena::new(domain, self.domain.gravity, self.law);
         if self.open_top {
-            arena.domain.sides[1] = Side::Open;
+            arena.domain.sides[1] = BoxSide::Open;
         }
         arena
     }
@@ -159,7 +160,7 @@ impl Scene {
             binding.whole_if_any(&NOISE_SEED, &mut self.noise_seed);
         }
         let seed = self.noise_seed.or(self.start.seed()).unwrap_or(1);
-        self.law.thermal = side(&name).map(|side| Thermal { side, temperature, seed });
+        self.law.thermal = side(&name).map(|side| ThermalWall { side, temperature, seed });
     }
 
     fn bind_floor(&mut self, binding: &mut dyn Binding) {

@@ -1,45 +1,45 @@
 //! Simulation of hard discs: advances the engine event by event and observes the discs.
 
-use super::checked::Checked;
-use super::collapse::{Endless, Watch};
+use super::checked::CheckedHardDisks;
+use super::collapse::{CollapseMonitor, EndlessCollisions};
 use super::collision_log::Log;
-use super::engine::{Engine, EngineError, Occurred, Partner};
+use super::engine::{EngineError, EventEngine, EventPartner, ExecutedEvent};
 use super::event::Arena;
 use super::failures::{culprit, failure};
 use super::fast::Fast;
-use super::followed::Followed;
+use super::followed::CrossingCounter;
 use super::idle::never;
-use super::quantities::{OBSERVABLES, Seen};
+use super::quantities::{HardDiskObservation, OBSERVABLES};
 use super::reference;
 use super::restored::sound;
-use super::sums::{Mark, Means, Motion, Totals};
-use crate::io::checkpoint::Column;
+use super::sums::{CollisionTotals, IntervalMark, IntervalMeans, TotalMotion};
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::observed::values;
-use crate::method::{Clock, Culprit, Failure, PerParticle, RunWarning, Simulation, Snapshot, Until};
+use crate::method::{Clock, Culprit, PerParticle, PhysicsFailure, RunWarning, Simulation, Snapshot, Until};
 use crate::number::{counted, significant};
 use crate::observe::relative_energy_error;
-use crate::particles::{Particles, States, in_space};
+use crate::particles::{GrainStates, Particles, in_space};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 use stripmine_kernels::mask::Mask;
 
 /// Events, or rebuilds of the grid, between checks for an interruption.
 const INTERRUPT_CHECK_INTERVAL: u64 = 4096;
 
 /// Running simulation of hard discs.
-pub(super) struct Running {
-    engine: Box<dyn Engine>,
+pub(super) struct HardDiskSimulation {
+    engine: Box<dyn EventEngine>,
     arena: Arena,
     clock: Clock,
-    totals: Totals,
-    watch: Watch,
+    totals: CollisionTotals,
+    watch: CollapseMonitor,
     /// Sums at the previous row.
-    row: Mark,
+    row: IntervalMark,
     /// Kinetic and potential energy at the start.
     start: [f64; 2],
     /// True if the idleness check has run since the last event and proved nothing.
@@ -50,13 +50,13 @@ pub(super) struct Running {
     /// Rows of collisions, if requested.
     log: Option<Log>,
     /// Crossings of periodic sides, if displacements are requested.
-    followed: Option<Followed>,
+    followed: Option<CrossingCounter>,
     seconds: f64,
 }
 
 /// Optional records of a run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Observed {
+pub(super) struct RecordOptions {
     /// Logs every collision.
     pub(super) logs: bool,
     /// Counts crossings of periodic sides.
@@ -65,46 +65,54 @@ pub(super) struct Observed {
 
 /// Configuration of the search for events.
 #[derive(Clone, Debug)]
-enum Way {
+enum EngineConfiguration {
     Fast(InstructionSet),
     Reference(Mask),
 }
 
-impl Way {
-    fn begin(&self, arena: Arena, discs: Vec<Disc>, time: f64) -> Result<Box<dyn Engine>, EngineError> {
+impl EngineConfiguration {
+    fn begin(
+        &self,
+        arena: Arena,
+        discs: Vec<FlyingDisc>,
+        time: f64,
+    ) -> Result<Box<dyn EventEngine>, EngineError> {
         Ok(match self {
-            Way::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)?),
-            Way::Reference(mask) => reference::begin(arena, discs, mask, time)?,
+            EngineConfiguration::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)?),
+            EngineConfiguration::Reference(mask) => reference::begin(arena, discs, mask, time)?,
         })
     }
 }
 
-impl Running {
+impl HardDiskSimulation {
     /// Starts the simulation from the discs of a checked scene.
-    pub(super) fn new(checked: &Checked, observed: Observed) -> Result<Running, Failure> {
+    pub(super) fn new(
+        checked: &CheckedHardDisks,
+        observed: RecordOptions,
+    ) -> Result<HardDiskSimulation, PhysicsFailure> {
         let (discs, places) = checked.discs();
         let arena = checked.scene.arena(checked.domain);
-        let kinetic = Motion::of(discs.iter(), &arena, 0.0).kinetic();
+        let kinetic = TotalMotion::of(discs.iter(), &arena, 0.0).kinetic();
         let start = [kinetic, potential(discs.iter(), &arena, 0.0)];
-        let watch = Watch::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
+        let watch = CollapseMonitor::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
         let way = match &checked.mask {
-            Some(mask) => Way::Reference(mask.clone()),
-            None => Way::Fast(checked.scene.instructions()),
+            Some(mask) => EngineConfiguration::Reference(mask.clone()),
+            None => EngineConfiguration::Fast(checked.scene.instructions()),
         };
-        let followed = observed.follows.then(|| Followed::new(&arena, discs.clone()));
+        let followed = observed.follows.then(|| CrossingCounter::new(&arena, discs.clone()));
         // The engine consumes the discs, so a failure builds them again.
         let stopped = |why| {
             let (discs, _) = checked.discs();
             failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
         };
         let engine = way.begin(arena, discs, 0.0).map_err(stopped)?;
-        Ok(Running {
+        Ok(HardDiskSimulation {
             engine,
             arena,
             clock: Clock::default(),
-            totals: Totals::default(),
+            totals: CollisionTotals::default(),
             watch,
-            row: Mark::default(),
+            row: IntervalMark::default(),
             start,
             particles: Arc::clone(&checked.particles),
             places,
@@ -116,11 +124,11 @@ impl Running {
     }
 
     /// Iterates over the discs in the order of their numbers.
-    fn discs(&self) -> impl Iterator<Item = &Disc> {
+    fn discs(&self) -> impl Iterator<Item = &FlyingDisc> {
         (0..self.engine.count() as u32).map(|number| self.engine.disc(number))
     }
 
-    fn count(&mut self, happened: &Occurred) {
+    fn count(&mut self, happened: &ExecutedEvent) {
         self.clock.events += 1;
         self.clock.time = happened.time;
         self.may_meet = false;
@@ -128,7 +136,7 @@ impl Running {
         if let Some(followed) = &mut self.followed {
             let mut see = |disc: u32| followed.see(&self.arena, disc, self.engine.disc(disc));
             see(happened.disc);
-            if let Partner::Disc(other) = happened.with {
+            if let EventPartner::Disc(other) = happened.with {
                 see(other);
             }
         }
@@ -142,25 +150,31 @@ impl Running {
     /// True if no event can ever happen. The proof runs at most once between two events.
     fn is_idle(&mut self) -> bool {
         if !self.may_meet {
-            let discs: Vec<Disc> = self.discs().copied().collect();
+            let discs: Vec<FlyingDisc> = self.discs().copied().collect();
             self.may_meet = !never(&self.arena, &discs);
         }
         !self.may_meet
     }
 
-    fn idle(&self) -> Failure {
+    fn idle(&self) -> PhysicsFailure {
         let message = "no disc will ever meet another disc or a side";
         let remedy = "set run.time instead of run.events, or give the discs other velocities";
-        Failure::new(super::IDLE, message, remedy).at(self.clock)
+        PhysicsFailure::new(super::IDLE, message, remedy).at(self.clock)
     }
 
-    fn failure(&self, why: EngineError) -> Failure {
+    fn failure(&self, why: EngineError) -> PhysicsFailure {
         failure(why, &|disc| *self.engine.disc(disc), &self.particles, &self.places, self.clock)
     }
 
-    fn endless(&self, happened: &Occurred, Endless { rests, events, duration }: Endless) -> Failure {
-        let discs =
-            [Some(happened.disc), if let Partner::Disc(other) = happened.with { Some(other) } else { None }];
+    fn endless(
+        &self,
+        happened: &ExecutedEvent,
+        EndlessCollisions { rests, events, duration }: EndlessCollisions,
+    ) -> PhysicsFailure {
+        let discs = [
+            Some(happened.disc),
+            if let EventPartner::Disc(other) = happened.with { Some(other) } else { None },
+        ];
         let culprits: Vec<Culprit> = discs.into_iter().flatten().map(|disc| self.culprit(disc)).collect();
         let named: Vec<String> = culprits.iter().map(ToString::to_string).collect();
         let (named, took) = (named.join(" and "), significant(duration, 4));
@@ -183,7 +197,7 @@ impl Running {
                           elastic; or raise law.restitution";
             (super::INELASTIC_COLLAPSE, message, remedy.to_owned())
         };
-        let failure = Failure::new(kind, message, remedy).at(self.clock);
+        let failure = PhysicsFailure::new(kind, message, remedy).at(self.clock);
         let rate = events as f64 / duration.max(f64::MIN_POSITIVE);
         failure.of(culprits.len() as u64, culprits).with([
             ("events", events as f64),
@@ -198,12 +212,12 @@ impl Running {
 }
 
 /// Total potential energy of the discs at a time.
-fn potential<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> f64 {
+fn potential<'d>(discs: impl Iterator<Item = &'d FlyingDisc>, arena: &Arena, time: f64) -> f64 {
     discs.map(|disc| arena.potential(disc, time)).sum()
 }
 
 /// Time in which a disc of typical speed flies through the smallest radius.
-fn crossing<'d>(discs: impl Iterator<Item = &'d Disc>) -> f64 {
+fn crossing<'d>(discs: impl Iterator<Item = &'d FlyingDisc>) -> f64 {
     let (mut count, mut squares, mut smallest) = (0.0, 0.0, f64::INFINITY);
     for disc in discs {
         count += 1.0;
@@ -214,29 +228,29 @@ fn crossing<'d>(discs: impl Iterator<Item = &'d Disc>) -> f64 {
 }
 
 /// Time in which a disc falls through the smallest radius; infinite without gravity.
-fn falling<'d>(discs: impl IntoIterator<Item = &'d Disc>, arena: &Arena) -> f64 {
+fn falling<'d>(discs: impl IntoIterator<Item = &'d FlyingDisc>, arena: &Arena) -> f64 {
     let [gx, gy] = arena.space.gravity().unwrap_or_default();
     let smallest = discs.into_iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
     (2.0 * smallest / gx.hypot(gy)).sqrt()
 }
 
-impl Running {
+impl HardDiskSimulation {
     /// Current motion of all discs.
-    fn motion(&self) -> Motion {
-        Motion::of(self.discs(), &self.arena, self.clock.time)
+    fn motion(&self) -> TotalMotion {
+        TotalMotion::of(self.discs(), &self.arena, self.clock.time)
     }
 
     /// Current observation, and the sums from which its means are calculated.
-    fn seen(&self) -> (Seen, Mark) {
+    fn seen(&self) -> (HardDiskObservation, IntervalMark) {
         let (time, motion) = (self.clock.time, self.motion());
         let mark = self.totals.mark(&self.arena, self.discs(), &motion, time);
-        let Means { compressibility, collision_rate } = mark.since(&self.row, &motion);
+        let IntervalMeans { compressibility, collision_rate } = mark.since(&self.row, &motion);
         let (kinetic, gravitational) = (motion.kinetic(), potential(self.discs(), &self.arena, time));
         let [kinetic_at_start, potential_at_start] = self.start;
-        let Totals { collisions, virial, work, .. } = self.totals;
+        let CollisionTotals { collisions, virial, work, .. } = self.totals;
         let change = (kinetic - kinetic_at_start) + (gravitational - potential_at_start) - work;
         let start = kinetic_at_start + potential_at_start;
-        let seen = Seen {
+        let seen = HardDiskObservation {
             clock: self.clock,
             collisions,
             kinetic,
@@ -253,7 +267,7 @@ impl Running {
     }
 }
 
-impl PerParticle for Running {
+impl PerParticle for HardDiskSimulation {
     fn particles(&self) -> Particles {
         let mut particles = Particles::clone(&self.particles);
         let all = particles.all_mut();
@@ -265,7 +279,7 @@ impl PerParticle for Running {
         particles
     }
 
-    fn states(&self, states: &mut States) {
+    fn states(&self, states: &mut GrainStates) {
         let time = self.clock.time;
         for (disc, &number) in self.discs().zip(&self.places) {
             states.put(number, self.arena.place(disc, time), disc.velocity_at(&self.arena.space, time));
@@ -284,8 +298,8 @@ impl PerParticle for Running {
     }
 }
 
-impl Simulation for Running {
-    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), Failure> {
+impl Simulation for HardDiskSimulation {
+    fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), PhysicsFailure> {
         let begun = Instant::now();
         let end = until.iter().filter_map(|moment| match moment {
             Until::Time(time) => Some(*time),
@@ -344,22 +358,22 @@ impl Simulation for Running {
     }
 
     fn snapshot(&self) -> Snapshot {
-        let column = |(name, of): (&str, Field)| {
-            (name.to_owned(), Column::F64(self.discs().map(|disc| *of(&mut { *disc })).collect()))
+        let column = |(name, of): (&str, DiscField)| {
+            (name.to_owned(), CheckpointColumn::F64(self.discs().map(|disc| *of(&mut { *disc })).collect()))
         };
         let mut kept = self.engine.snapshot();
         kept.columns.extend(FIELDS.map(column));
-        kept.add_column("events", Column::U64(self.discs().map(|disc| disc.events).collect()));
+        kept.add_column("events", CheckpointColumn::U64(self.discs().map(|disc| disc.events).collect()));
         self.totals.keep(&mut kept);
         self.row.keep(&mut kept);
         self.watch.keep(&mut kept);
-        kept.columns.extend(self.followed.iter().flat_map(Followed::columns));
+        kept.columns.extend(self.followed.iter().flat_map(CrossingCounter::columns));
         kept
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         clock.of_events()?;
-        let mut discs: Vec<Disc> = self.discs().copied().collect();
+        let mut discs: Vec<FlyingDisc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
             let values = snapshot.numbers(name, discs.len())?;
             discs.iter_mut().zip(values).for_each(|(disc, &value)| *of(disc) = value);
@@ -367,8 +381,8 @@ impl Simulation for Running {
         let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
         sound(&self.arena, &self.particles, &discs, &clock)?;
-        self.totals = Totals::kept(&snapshot, clock.events)?;
-        self.row = Mark::kept(&snapshot, &self.totals)?;
+        self.totals = CollisionTotals::kept(&snapshot, clock.events)?;
+        self.row = IntervalMark::kept(&snapshot, &self.totals)?;
         self.watch.restore(&snapshot)?;
         if let Some(followed) = &mut self.followed {
             followed.take_up(&discs, &snapshot.columns)?;
@@ -391,7 +405,7 @@ impl Simulation for Running {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        let Totals { collisions, made_elastic, virial, .. } = self.totals;
+        let CollisionTotals { collisions, made_elastic, virial, .. } = self.totals;
         let entries = [
             ("discs", json!(self.places.len())),
             ("collisions", json!(collisions)),
@@ -411,7 +425,7 @@ impl Simulation for Running {
     }
 
     fn warnings(&self) -> Vec<RunWarning> {
-        let Totals { collisions, made_elastic, .. } = self.totals;
+        let CollisionTotals { collisions, made_elastic, .. } = self.totals;
         let message = format!(
             "{made_elastic} of {collisions} collisions were made elastic, because either disc had collided less than \
              law.contact_duration = {} before",
@@ -422,8 +436,9 @@ impl Simulation for Running {
     }
 
     fn in_words(&self) -> String {
-        let (Seen { temperature, .. }, mark) = self.seen();
-        let Means { compressibility, collision_rate } = mark.since(&Mark::default(), &self.motion());
+        let (HardDiskObservation { temperature, .. }, mark) = self.seen();
+        let IntervalMeans { compressibility, collision_rate } =
+            mark.since(&IntervalMark::default(), &self.motion());
         let temperature = match temperature.is_nan() {
             true => "none (no degree of freedom)".to_owned(),
             false => significant(temperature, 5),
@@ -439,10 +454,10 @@ impl Simulation for Running {
     }
 }
 
-type Field = fn(&mut Disc) -> &mut f64;
+type DiscField = fn(&mut FlyingDisc) -> &mut f64;
 
 /// Fields of a disc that a checkpoint stores.
-const FIELDS: [(&str, Field); 5] = [
+const FIELDS: [(&str, DiscField); 5] = [
     ("x", |disc| &mut disc.position[0]),
     ("y", |disc| &mut disc.position[1]),
     ("vx", |disc| &mut disc.velocity[0]),

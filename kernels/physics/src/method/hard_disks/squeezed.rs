@@ -1,10 +1,10 @@
 //! Repair of starts with rounding overlaps: if discs overlap only by the precision of their positions, all radii shrink accordingly.
 
-use super::scene::Scene;
-use crate::domain::{Domain, Side};
+use super::scene::HardDiskScene;
+use crate::domain::{BoxSide, Domain};
 use crate::number::significant;
 use crate::particles::Particles;
-use crate::scene::{FILE, GENERATE, POSITIONS, Start, Values, Warning};
+use crate::scene::{DiscStart, FILE, GENERATE, POSITIONS, SceneValues, Warning};
 use crate::start::deepest_overlap;
 
 /// Tolerated overlap at the start as a fraction of the sum of the radii: rounding of double precision.
@@ -14,20 +14,20 @@ const LARGEST: f64 = 1e-6;
 
 /// Overlaps of discs with each other and with closed sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Squeeze {
+pub(super) struct StartOverlaps {
     /// Number of overlapping pairs and of discs beyond a closed side.
     count: usize,
     /// Deepest overlap as a fraction of the radii.
     deepest: f64,
 }
 
-impl Squeeze {
+impl StartOverlaps {
     /// Measures the overlaps of discs in a box.
-    pub(super) fn of(domain: &Domain, particles: &Particles) -> Squeeze {
+    pub(super) fn of(domain: &Domain, particles: &Particles) -> StartOverlaps {
         let (mut count, mut deepest) = deepest_overlap(domain, particles, ROUNDING, LARGEST);
         for disc in particles.all() {
             for axis in 0..2 {
-                let Side::Closed(side) = domain.sides[axis] else { continue };
+                let BoxSide::Closed(side) = domain.sides[axis] else { continue };
                 let along = disc.position[axis] - domain.origin[axis];
                 let beyond = 1.0 - along.min(side - along) / disc.radius;
                 if beyond > ROUNDING {
@@ -35,7 +35,7 @@ impl Squeeze {
                 }
             }
         }
-        Squeeze { count, deepest }
+        StartOverlaps { count, deepest }
     }
 
     /// True if the overlap exceeds the precision of written positions.
@@ -46,8 +46,8 @@ impl Squeeze {
     /// Shrinks all radii until nothing overlaps, if the overlaps are within the precision of positions. Returns a warning if it did.
     pub(super) fn undone(
         &self,
-        values: &Values,
-        scene: &Scene,
+        values: &SceneValues,
+        scene: &HardDiskScene,
         particles: &mut Particles,
     ) -> Option<Warning> {
         if self.count == 0 || self.is_deep() {
@@ -55,7 +55,7 @@ impl Squeeze {
         }
         particles.all_mut().iter_mut().for_each(|disc| disc.radius *= 1.0 - self.deepest);
         let key = match scene.start {
-            Start::File(_) => &FILE,
+            DiscStart::File(_) => &FILE,
             _ if values.gives(&POSITIONS) => &POSITIONS,
             _ => &GENERATE,
         };

@@ -1,14 +1,14 @@
 //! Sums over events, and the means over an interval that follow from them.
 
-use super::engine::Occurred;
+use super::engine::ExecutedEvent;
 use super::event::Arena;
 use crate::method::Snapshot;
 use crate::observe::{AxisMotion, temperature};
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Counts and sums since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Totals {
+pub(super) struct CollisionTotals {
     /// Collisions of pairs.
     pub(super) collisions: u64,
     /// Collisions made elastic by the contact duration.
@@ -23,7 +23,7 @@ pub(super) struct Totals {
 
 /// Sums at the beginning or end of an interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Mark {
+pub(super) struct IntervalMark {
     /// Time of the mark.
     time: f64,
     collisions: u64,
@@ -34,7 +34,7 @@ pub(super) struct Mark {
 
 /// Total motion of the discs at a moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
+pub(super) struct TotalMotion {
     pub(super) count: f64,
     pub(super) mass: f64,
     pub(super) axes: [AxisMotion; 2],
@@ -44,16 +44,20 @@ pub(super) struct Motion {
 
 /// Means over an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Means {
+pub(super) struct IntervalMeans {
     pub(super) compressibility: f64,
     pub(super) collision_rate: f64,
 }
 
-impl Motion {
+impl TotalMotion {
     /// Sums the motion of discs at a time.
-    pub(super) fn of<'d>(discs: impl Iterator<Item = &'d Disc>, arena: &Arena, time: f64) -> Motion {
+    pub(super) fn of<'d>(
+        discs: impl Iterator<Item = &'d FlyingDisc>,
+        arena: &Arena,
+        time: f64,
+    ) -> TotalMotion {
         let conserved = arena.conserved_axes();
-        let mut motion = Motion { count: 0.0, mass: 0.0, axes: [AxisMotion::default(); 2], conserved };
+        let mut motion = TotalMotion { count: 0.0, mass: 0.0, axes: [AxisMotion::default(); 2], conserved };
         for disc in discs {
             motion.count += 1.0;
             motion.mass += disc.mass;
@@ -76,10 +80,10 @@ impl Motion {
     }
 }
 
-impl Totals {
+impl CollisionTotals {
     /// Adds an event.
     #[inline]
-    pub(super) fn add(&mut self, happened: &Occurred) {
+    pub(super) fn add(&mut self, happened: &ExecutedEvent) {
         if let Some(impact) = happened.impact {
             self.collisions += 1;
             self.made_elastic += u64::from(impact.was_made_elastic);
@@ -93,15 +97,15 @@ impl Totals {
     pub(super) fn mark<'d>(
         &self,
         arena: &Arena,
-        discs: impl Iterator<Item = &'d Disc>,
-        motion: &Motion,
+        discs: impl Iterator<Item = &'d FlyingDisc>,
+        motion: &TotalMotion,
         time: f64,
-    ) -> Mark {
+    ) -> IntervalMark {
         let action = match arena.keeps_kinetic {
             true => 2.0 * motion.kinetic() * time,
             false => self.action + discs.map(|disc| arena.action(disc, time)).sum::<f64>(),
         };
-        Mark { time, collisions: self.collisions, virial: self.virial, action }
+        IntervalMark { time, collisions: self.collisions, virial: self.virial, action }
     }
 
     /// Adds the sums to a checkpoint.
@@ -117,9 +121,9 @@ impl Totals {
     ///
     /// # Errors
     /// A message if one is missing.
-    pub(super) fn kept(kept: &Snapshot, events: u64) -> Result<Totals, String> {
+    pub(super) fn kept(kept: &Snapshot, events: u64) -> Result<CollisionTotals, String> {
         let collisions = kept.count_at_most("collisions", events)?;
-        Ok(Totals {
+        Ok(CollisionTotals {
             collisions,
             made_elastic: kept.count_at_most("made_elastic", collisions)?,
             virial: kept.sum("virial")?,
@@ -129,20 +133,20 @@ impl Totals {
     }
 }
 
-impl Mark {
+impl IntervalMark {
     /// Means over the interval from an earlier mark. Without a collision, or over no time, they are those of an ideal gas.
-    pub(super) fn since(&self, before: &Mark, motion: &Motion) -> Means {
+    pub(super) fn since(&self, before: &IntervalMark, motion: &TotalMotion) -> IntervalMeans {
         let (duration, collisions) = (self.time - before.time, self.collisions - before.collisions);
         if collisions == 0 || duration <= 0.0 {
-            return Means { compressibility: 1.0, collision_rate: 0.0 };
+            return IntervalMeans { compressibility: 1.0, collision_rate: 0.0 };
         }
         // The action sums both axes, so the first axis carries all of ⟨Σ m v²⟩.
         let [x, y] = motion.axes.map(|axis| axis.momentum);
         let twice_kinetic = (self.action - before.action) / duration;
         let axes =
             [AxisMotion { twice_kinetic, momentum: x }, AxisMotion { twice_kinetic: 0.0, momentum: y }];
-        let mean_temperature = Motion { axes, ..*motion }.temperature();
-        Means {
+        let mean_temperature = TotalMotion { axes, ..*motion }.temperature();
+        IntervalMeans {
             compressibility: 1.0
                 + (self.virial - before.virial) / (2.0 * motion.count * mean_temperature * duration),
             collision_rate: 2.0 * collisions as f64 / (motion.count * duration),
@@ -161,8 +165,8 @@ impl Mark {
     ///
     /// # Errors
     /// A message if it is missing or later than the sums.
-    pub(super) fn kept(kept: &Snapshot, totals: &Totals) -> Result<Mark, String> {
-        Ok(Mark {
+    pub(super) fn kept(kept: &Snapshot, totals: &CollisionTotals) -> Result<IntervalMark, String> {
+        Ok(IntervalMark {
             time: kept.sum("row.time")?,
             collisions: kept.count_at_most("row.collisions", totals.collisions)?,
             virial: kept.sum("row.virial")?,

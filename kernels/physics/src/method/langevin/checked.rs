@@ -1,16 +1,16 @@
 //! Checks a scene of particles in a bath against the preconditions of the method.
 
-use super::found::{Found, found};
-use super::limits::{Colliding, bound, step_limits};
-use super::scene::Scene;
+use super::found::{ChosenSearch, found};
+use super::limits::{CollidingParticles, bound, step_limits};
+use super::scene::LangevinScene;
 use crate::domain::Domain;
 use crate::method::{Prepared, StepLimit, compress};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::scene::{
-    DT, GENERATE, RADIUS, Read, Reason, SceneError, SceneErrors, Values, WallMotion, Warning,
+    DT, GENERATE, MistakeKind, RADIUS, ReadBinding, SceneError, SceneErrors, SceneValues, WallMotion, Warning,
 };
-use crate::start::{Stated, make, noise_seed, outside, overlaps};
+use crate::start::{StatedStart, make, noise_seed, outside, overlaps};
 use stripmine_kernels::noise::NoiseSource;
 
 /// Largest pair energy at the start, in ε.
@@ -18,8 +18,8 @@ const HIGHEST: f64 = 100.0;
 
 /// Checked scene of Langevin dynamics.
 #[derive(Clone)]
-pub(super) struct Checked {
-    pub(super) scene: Scene,
+pub(super) struct CheckedLangevin {
+    pub(super) scene: LangevinScene,
     pub(super) domain: Domain,
     pub(super) particles: Particles,
     /// Diameter σ and mass of every particle (length, mass).
@@ -27,7 +27,7 @@ pub(super) struct Checked {
     pub(super) mass: f64,
     /// Cut-off (length); the diameter without pairs.
     pub(super) reach: f64,
-    pub(super) found: Found,
+    pub(super) found: ChosenSearch,
     /// Seed of the noise given by the scene.
     pub(super) seed: u64,
     /// Source of the bath's random numbers.
@@ -40,16 +40,16 @@ pub(super) struct Checked {
 ///
 /// # Errors
 /// [`SceneErrors`] with every violated precondition.
-pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
+pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
     Ok(checked(values)?.prepared())
 }
 
 /// Checks a scene and returns the method's own representation.
-pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
-    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
+pub(super) fn checked(values: SceneValues) -> Result<CheckedLangevin, SceneErrors> {
+    let (mut scene, mut read) = (LangevinScene::default(), ReadBinding::new(&values));
     scene.bind(&mut read);
     read.done()?;
-    let stated = Stated {
+    let stated = StatedStart {
         values: &values,
         domain: &scene.domain,
         start: &scene.start,
@@ -92,12 +92,24 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     }
     let seed = scene.noise_seed.or(scene.start.seed()).unwrap_or(1);
     let noise = NoiseSource::new(noise_seed(&scene.start, seed, &particles));
-    Ok(Checked { scene, domain, particles, diameter, mass, reach, found, seed, noise, warnings, choices })
+    Ok(CheckedLangevin {
+        scene,
+        domain,
+        particles,
+        diameter,
+        mass,
+        reach,
+        found,
+        seed,
+        noise,
+        warnings,
+        choices,
+    })
 }
 
 /// Returns the first particle if all particles are equal and mobile.
-fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, SceneError> {
-    let refused = |message: String| values.spot(&RADIUS).error(Reason::Contradiction, message);
+fn of_one_kind(values: &SceneValues, particles: &Particles) -> Result<Particle, SceneError> {
+    let refused = |message: String| values.spot(&RADIUS).error(MistakeKind::Contradiction, message);
     let Some(&first) = particles.all().first() else {
         return Err(refused("there is no particle".to_owned()));
     };
@@ -105,7 +117,7 @@ fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, Scene
     if walls > 0 {
         let error = values
             .spot(&GENERATE)
-            .error(Reason::Contradiction, format!("{walls} wall discs, but every particle moves"));
+            .error(MistakeKind::Contradiction, format!("{walls} wall discs, but every particle moves"));
         return Err(error.expecting(
             "generate = \"mesh\", \"random\", \"hexagonal\" or \"list\", or a file without wall discs",
         ));
@@ -122,7 +134,7 @@ fn of_one_kind(values: &Values, particles: &Particles) -> Result<Particle, Scene
 }
 
 /// Warning for a step beyond LAN17's bound.
-fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
+fn too_long(scene: &LangevinScene, diameter: f64, mass: f64) -> Option<Warning> {
     let (step, _) = bound(scene, diameter, mass);
     (scene.law.has_pairs() && scene.dt > step).then(|| Warning {
         check: "source-bound",
@@ -137,7 +149,7 @@ fn too_long(scene: &Scene, diameter: f64, mass: f64) -> Option<Warning> {
     })
 }
 
-impl Checked {
+impl CheckedLangevin {
     /// True if particles exert pair forces.
     pub(super) fn has_pairs(&self) -> bool {
         self.scene.law.has_pairs()
@@ -147,6 +159,6 @@ impl Checked {
     pub(super) fn limits(&self) -> Vec<StepLimit> {
         let (diameter, mass) = (self.diameter, self.mass);
         let (count, area) = (self.particles.len(), self.domain.area());
-        step_limits(&self.scene, Colliding { diameter, mass, count, area })
+        step_limits(&self.scene, CollidingParticles { diameter, mass, count, area })
     }
 }

@@ -1,13 +1,15 @@
 //! Stepper of a scene, assembled from its pair law, integrator and search.
 
-use super::checked::Checked;
-use super::found::Found;
+use super::checked::CheckedLangevin;
+use super::found::ChosenSearch;
 use super::laws::SweptLaw;
 use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;
-use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{Dynamics, Losing, Sort, System, WithLaw, WithScheme, begin};
-use crate::method::{Failure, FailureKind};
+use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, PairSearch, SectorSearch};
+use crate::method::pairwise::{
+    Dynamics, LawTask, PairSystem, RemovableDiscs, SchemeTask, SortSchedule, begin,
+};
+use crate::method::{FailureKind, PhysicsFailure};
 use crate::particles::Particles;
 use crate::scene::Precision;
 use stripmine_kernels::InstructionSet;
@@ -17,7 +19,7 @@ use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 
 /// Dynamics of particles of one species in a bath.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct InBath {
+pub(super) struct BathDynamics {
     law: SweptLaw,
     scheme: SchemeKind,
     bath: Bath,
@@ -25,11 +27,11 @@ pub(super) struct InBath {
     mass: f64,
 }
 
-impl InBath {
+impl BathDynamics {
     /// Returns the dynamics of a checked scene.
-    pub(super) fn of(checked: &Checked) -> InBath {
-        let Checked { scene, diameter, mass, .. } = checked;
-        InBath {
+    pub(super) fn of(checked: &CheckedLangevin) -> BathDynamics {
+        let CheckedLangevin { scene, diameter, mass, .. } = checked;
+        BathDynamics {
             law: scene.law_at(*diameter),
             scheme: scene.scheme,
             bath: scene.bath,
@@ -39,13 +41,13 @@ impl InBath {
     }
 }
 
-impl Dynamics for InBath {
-    fn with_law<W: WithLaw>(&self, work: W) -> W::Output {
+impl Dynamics for BathDynamics {
+    fn with_law<W: LawTask>(&self, work: W) -> W::Output {
         self.law.with(work)
     }
 
-    fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output {
-        let InBath { scheme, bath, dt, mass, .. } = *self;
+    fn with_scheme<W: SchemeTask>(&self, work: W) -> W::Output {
+        let BathDynamics { scheme, bath, dt, mass, .. } = *self;
         match scheme {
             SchemeKind::Baoab => work.with(Baoab::new(bath, dt, mass)),
             SchemeKind::Stochastic => work.with(Stochastic::<false> { bath }),
@@ -59,10 +61,10 @@ impl Dynamics for InBath {
 /// # Errors
 /// [`Failure`] if the start breaks a precondition, or the processor lacks the instructions.
 pub(super) fn stepper(
-    checked: &Checked,
+    checked: &CheckedLangevin,
     particles: Particles,
     follows: bool,
-) -> Result<Box<dyn Losing>, Failure> {
+) -> Result<Box<dyn RemovableDiscs>, PhysicsFailure> {
     match checked.scene.precision {
         Precision::F64 => of_precision::<f64, f64>(checked, particles, follows),
         Precision::F32 => of_precision::<f32, f32>(checked, particles, follows),
@@ -71,14 +73,14 @@ pub(super) fn stepper(
 }
 
 fn of_precision<S: backend::Precision, P: backend::Precision>(
-    checked: &Checked,
+    checked: &CheckedLangevin,
     particles: Particles,
     follows: bool,
-) -> Result<Box<dyn Losing>, Failure> {
-    let Checked { scene, domain, mass, reach, found, .. } = checked;
+) -> Result<Box<dyn RemovableDiscs>, PhysicsFailure> {
+    let CheckedLangevin { scene, domain, mass, reach, found, .. } = checked;
     let (domain, mass, reach): (Domain, f64, f64) = (*domain, *mass, *reach);
-    let dynamics = InBath::of(checked);
-    let system = System {
+    let dynamics = BathDynamics::of(checked);
+    let system = PairSystem {
         domain,
         dt: scene.dt,
         gravity: [0.0; 2],
@@ -88,8 +90,8 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
         radius: Some(0.5 * reach),
         reach,
         sort: match scene.sort {
-            SortKind::EveryStep => Sort::EveryStep,
-            SortKind::Auto | SortKind::WhenNeeded => Sort::WhenNeeded,
+            SortKind::EveryStep => SortSchedule::EveryStep,
+            SortKind::Auto | SortKind::WhenNeeded => SortSchedule::WhenNeeded,
         },
         longest_step: f64::INFINITY,
         // Without pair forces particles may cross any number of periods.
@@ -99,31 +101,31 @@ fn of_precision<S: backend::Precision, P: backend::Precision>(
     };
     let count = particles.len();
     let set = scene.instructions();
-    fn boxed<S: backend::Precision, P: backend::Precision, Q: Search<S, P> + 'static>(
-        (dynamics, system, set): (InBath, System, InstructionSet),
+    fn boxed<S: backend::Precision, P: backend::Precision, Q: PairSearch<S, P> + 'static>(
+        (dynamics, system, set): (BathDynamics, PairSystem, InstructionSet),
         search: Q,
         particles: Particles,
-    ) -> Result<Box<dyn Losing>, Failure> {
+    ) -> Result<Box<dyn RemovableDiscs>, PhysicsFailure> {
         begin::<S, P, Q, _>((dynamics, system, set), search, particles)
     }
     let all = (dynamics, system, set);
     match found.clone() {
-        Found::Lattice(shape, frame) => {
+        ChosenSearch::Lattice(shape, frame) => {
             // The cut-off is each particle's diameter on the lattice; particles nearer than that share a cell.
             let radii = std::iter::repeat_n(0.5 * reach, count);
             let search = LatticeSearch::<P>::new::<S>(shape, frame, OnConflict::Resolve, radii);
             boxed::<S, P, _>(all, search, particles)
         }
-        Found::Sectors(grid) => {
+        ChosenSearch::Sectors(grid) => {
             boxed::<S, P, _>(all, SectorSearch::<P>::new::<S>(grid, count, reach), particles)
         }
-        Found::Lists(grid, skin) => {
+        ChosenSearch::Lists(grid, skin) => {
             boxed::<S, P, _>(all, ListSearch::<S, P>::new(grid, count, reach, skin), particles)
         }
     }
 }
 
 /// True if a failure concerns ejected particles, so that a run may continue without them.
-pub(super) fn is_loss(failure: &Failure) -> bool {
+pub(super) fn is_loss(failure: &PhysicsFailure) -> bool {
     matches!(failure.kind, FailureKind::OUT_OF_BOX | FailureKind::NOT_FINITE)
 }

@@ -6,10 +6,10 @@ use super::keys::VOCABULARY;
 use super::laws::TWINS;
 use super::quantities::QUANTITIES;
 use super::trials::{AXES, TRIALS};
-use crate::method::Entry;
+use crate::method::MethodEntry;
 
 /// Langevin dynamics.
-pub static ENTRY: Entry = Entry {
+pub static ENTRY: MethodEntry = MethodEntry {
     vocabulary: &VOCABULARY,
     source: "Langevin dynamics of 2017 (LAN17)",
     doc: "particles in a bath of friction and noise, with or without pair forces",

@@ -2,15 +2,15 @@
 
 use super::keys::{PER_SIDE, SEARCH, SKIN};
 use super::laws::LAW;
-use super::options::By;
-use super::scene::Scene;
+use super::options::PairSearchKind;
+use super::scene::LangevinScene;
 use crate::domain::Domain;
 use crate::grid::sectors_of;
 use crate::number::significant;
-use crate::scene::{GENERATE, Precision, Reason, SIDES, SceneError, Spot, Values};
+use crate::scene::{GENERATE, MistakeKind, Precision, SIDES, SceneError, SceneValues, Spot};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::fast::{Grid, GridError};
-use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+use stripmine_kernels::sweep::fast::{CellGrid, GridError};
+use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
 /// Pair energy, in ε, that particles hardly ever exceed. Pairs above it share a lattice cell, which costs time.
 const HIGHEST: f64 = 30.0;
@@ -21,92 +21,92 @@ const FEWEST: f64 = 3.0;
 
 /// Pair search with its parameters.
 #[derive(Clone, Debug)]
-pub(super) enum Found {
+pub(super) enum ChosenSearch {
     /// Lattice.
-    Lattice(LatticeShape, Frame),
-    Sectors(Grid),
+    Lattice(LatticeShape, LatticeFrame),
+    Sectors(CellGrid),
     /// Neighbour lists built from sectors, with their skin (length).
-    Lists(Grid, f64),
+    Lists(CellGrid, f64),
 }
 
-impl Found {
+impl ChosenSearch {
     /// Word of the search in scenes.
-    pub(super) fn by(&self) -> By {
+    pub(super) fn by(&self) -> PairSearchKind {
         match self {
-            Found::Lattice(..) => By::Lattice,
-            Found::Sectors(_) => By::Sectors,
-            Found::Lists(..) => By::NeighborList,
+            ChosenSearch::Lattice(..) => PairSearchKind::Lattice,
+            ChosenSearch::Sectors(_) => PairSearchKind::Sectors,
+            ChosenSearch::Lists(..) => PairSearchKind::NeighborList,
         }
     }
 }
 
 /// Chooses the pair search that the scene requests or that suits it.
 pub(super) fn found(
-    values: &Values,
-    scene: &mut Scene,
+    values: &SceneValues,
+    scene: &mut LangevinScene,
     domain: &Domain,
     [diameter, reach]: [f64; 2],
     count: usize,
     choices: &mut Vec<String>,
-) -> Result<Found, SceneError> {
+) -> Result<ChosenSearch, SceneError> {
     let single = scene.precision != Precision::F64;
     let box_spot =
         || -> Spot { if values.gives(&SIDES) { values.spot(&SIDES) } else { values.spot(&GENERATE) } };
     let edge = widest_cell(scene, diameter);
     let lattice = || lattice_of(domain, reach, edge);
-    let lists = |scene: &Scene| {
+    let lists = |scene: &LangevinScene| {
         let skin = scene.skin.unwrap_or_else(|| roomy_skin(domain, reach, count));
         let grid = sectors_of(domain, reach + skin, single, count);
-        (grid.map(|grid| Found::Lists(grid, skin)), skin)
+        (grid.map(|grid| ChosenSearch::Lists(grid, skin)), skin)
     };
-    let sectors = |scene: &Scene| match scene.per_side {
+    let sectors = |scene: &LangevinScene| match scene.per_side {
         None => sectors_of(domain, reach, single, count)
-            .map_err(|cause| box_spot().error(Reason::Geometry, cause.to_string())),
+            .map_err(|cause| box_spot().error(MistakeKind::Geometry, cause.to_string())),
         Some(per_side) => grid(values, domain, per_side, reach),
     };
     let chosen = match scene.by {
-        By::Lattice => lattice().ok_or_else(|| {
+        PairSearchKind::Lattice => lattice().ok_or_else(|| {
             let message = format!(
                 "no lattice serves: a mask of 5 × 5 cells of one particle each reaches {}, the cut-off is {reach}, and a side needs at \
                  least five cells",
                 significant(f64::from(HALF_WIDTH) * edge, 5)
             );
             let spot = if reach > f64::from(HALF_WIDTH) * edge { values.spot(&LAW) } else { values.spot(&SEARCH) };
-            spot.error(Reason::Geometry, message).expecting("search.by = \"sectors\" or \"neighbor-list\"")
-        }).map(|(shape, frame)| Found::Lattice(shape, frame))?,
-        By::Sectors => Found::Sectors(sectors(scene)?),
-        By::Auto | By::NeighborList if scene.by == By::NeighborList || scene.skin.is_some() => {
+            spot.error(MistakeKind::Geometry, message).expecting("search.by = \"sectors\" or \"neighbor-list\"")
+        }).map(|(shape, frame)| ChosenSearch::Lattice(shape, frame))?,
+        PairSearchKind::Sectors => ChosenSearch::Sectors(sectors(scene)?),
+        PairSearchKind::Auto | PairSearchKind::NeighborList if scene.by == PairSearchKind::NeighborList || scene.skin.is_some() => {
             let (lists, skin) = lists(scene);
             lists.map_err(|cause| {
                 let spot = if values.gives(&SKIN) { values.spot(&SKIN) } else { box_spot() };
-                let error = spot.error(Reason::Geometry, format!("{cause}, with a skin of {skin}", skin = significant(skin, 5)));
+                let error = spot.error(MistakeKind::Geometry, format!("{cause}, with a skin of {skin}", skin = significant(skin, 5)));
                 error.advising("make the box larger, lower search.skin, or set search.by = \"sectors\"")
             })?
         }
-        By::Auto if scene.per_side.is_some() => {
+        PairSearchKind::Auto if scene.per_side.is_some() => {
             choices.push("search.by = \"sectors\": search.sectors is given".to_owned());
-            Found::Sectors(sectors(scene)?)
+            ChosenSearch::Sectors(sectors(scene)?)
         }
-        By::Auto | By::NeighborList => match lists(scene).0 {
+        PairSearchKind::Auto | PairSearchKind::NeighborList => match lists(scene).0 {
             Ok(lists) => {
                 choices.push("search.by = \"neighbor-list\": fastest in all measured cases".to_owned());
                 lists
             }
             Err(_) => {
                 choices.push("search.by = \"sectors\": the box is too small for lists".to_owned());
-                Found::Sectors(sectors(scene)?)
+                ChosenSearch::Sectors(sectors(scene)?)
             }
         },
     };
     scene.by = chosen.by();
-    if let Found::Lists(_, skin) = &chosen {
+    if let ChosenSearch::Lists(_, skin) = &chosen {
         scene.skin = Some(*skin);
     }
     Ok(chosen)
 }
 
 /// Grid with a given number of sectors along each side.
-fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<Grid, SceneError> {
+fn grid(values: &SceneValues, domain: &Domain, per_side: u64, reach: f64) -> Result<CellGrid, SceneError> {
     let counts = [per_side as usize; 2];
     let edge = domain.lengths().map(|side| side / per_side as f64);
     if edge.iter().any(|&edge| edge < reach) {
@@ -117,7 +117,7 @@ fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<G
             significant(edge[0].min(edge[1]), 7),
             significant(reach, 7)
         );
-        let error = values.spot(&PER_SIDE).error(Reason::Geometry, message);
+        let error = values.spot(&PER_SIDE).error(MistakeKind::Geometry, message);
         return Err(match most >= FEWEST {
             true => error.expecting(format!("from 3 to {most} sectors")),
             false => error.advising("make the box larger: a side needs at least three sectors"),
@@ -126,9 +126,13 @@ fn grid(values: &Values, domain: &Domain, per_side: u64, reach: f64) -> Result<G
     let along = per_side as f64;
     if along * along >= f64::from(u32::MAX) {
         let cause = GridError::TooMany { columns: along, rows: along };
-        return Err(values.spot(&PER_SIDE).error(Reason::Geometry, cause.to_string()));
+        return Err(values.spot(&PER_SIDE).error(MistakeKind::Geometry, cause.to_string()));
     }
-    Ok(Grid { frame: Frame { origin: domain.corner(), edge }, counts, periodic: domain.periodic() })
+    Ok(CellGrid {
+        frame: LatticeFrame { origin: domain.corner(), edge },
+        counts,
+        periodic: domain.periodic(),
+    })
 }
 
 /// Default skin of the lists beyond the cut-off (length): about half the mean spacing, within bounds, and no more than the box
@@ -141,12 +145,12 @@ fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
 }
 
 /// Widest cell (length) that hardly any two particles of a diameter share.
-pub(super) fn widest_cell(scene: &Scene, diameter: f64) -> f64 {
+pub(super) fn widest_cell(scene: &LangevinScene, diameter: f64) -> f64 {
     scene.law.nearest(&scene.parameters, HIGHEST) * diameter / std::f64::consts::SQRT_2
 }
 
 /// Returns the lattice for pairs up to `reach` (length) apart, with cells no wider than `widest` (length); none if the box is too small.
-fn lattice_of(domain: &Domain, reach: f64, widest: f64) -> Option<(LatticeShape, Frame)> {
+fn lattice_of(domain: &Domain, reach: f64, widest: f64) -> Option<(LatticeShape, LatticeFrame)> {
     let least = reach / f64::from(HALF_WIDTH);
     if least > widest {
         return None;
@@ -159,5 +163,5 @@ fn lattice_of(domain: &Domain, reach: f64, widest: f64) -> Option<(LatticeShape,
     let mask = Mask::square(HALF_WIDTH);
     let [columns, rows] = counts.map(|count| count as usize);
     let shape = LatticeShape::new(columns, rows, &mask, domain.periodic()).ok()?;
-    Some((shape, Frame { origin: domain.corner(), edge }))
+    Some((shape, LatticeFrame { origin: domain.corner(), edge }))
 }

@@ -1,15 +1,15 @@
 //! Keys of this method, and their constraints on each other.
 
 use super::laws;
-use super::options::{By, SchemeKind, SortKind};
-use crate::scene::Bounds::{NonNegative, Positive};
+use super::options::{PairSearchKind, SchemeKind, SortKind};
 use crate::scene::Fallback::{Is, Otherwise};
-use crate::scene::Kind::{Choice, Number, Switch, Whole};
+use crate::scene::KeyValueKind::{Choice, Number, Switch, Whole};
+use crate::scene::NumberRange::{NonNegative, Positive};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, GRAVITY, HEADING, INSTRUCTIONS, KeySet, OUTPUT, PERIODIC,
-    PLANAR_DOMAIN, Reason, STEP, STEPPED_RUN, SUMMED, SceneError, TARGETED, Use, Value, Values, Vocabulary,
-    disagreements, too_many_steps,
+    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, GRAVITY, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind,
+    OUTPUT, PERIODIC, PLANAR_DOMAIN, STEP, STEPPED_RUN, SUMMED, SceneError, SceneValues, TARGETED, Use,
+    Vocabulary, disagreements, too_many_steps,
 };
 use crate::words::Words;
 
@@ -27,7 +27,7 @@ define_keys! {
     NOISE_SEED = "law" "noise_seed", Whole(0, u64::MAX), "", Otherwise("`particles.seed`; 1 where the start has none"), ALWAYS,
         "Seed of the bath's noise: runs of one start with different seeds are independent replicas. If the start is a file or a list, the noise also depends on the state: a run that continues from a frame draws new noise.";
 
-    SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
+    SEARCH = "search" "by", Choice(PairSearchKind::WORDS), "", Is("\"auto\""), ALWAYS,
         "Pair search: lattice, with cells of one particle each (for laws of short range, such as wca); sectors; or neighbor-list. auto takes the fastest that the scene allows.";
     PER_SIDE = "search" "sectors", Whole(3, 1_000_000), "", Otherwise("as is fastest"), SECTORS,
         "Sectors along each side; none may be narrower than the cut-off.";
@@ -80,14 +80,14 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
 };
 
 /// Rejects values that the method does not support.
-fn own_rules(values: &Values) -> Vec<SceneError> {
+fn own_rules(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = vec![];
-    let refused = |key, message: &str| values.spot(key).error(Reason::Contradiction, message.to_owned());
-    if matches!(values.value(&PERIODIC), Some(Value::Switches(periodic)) if periodic != [true; 2]) {
+    let refused = |key, message: &str| values.spot(key).error(MistakeKind::Contradiction, message.to_owned());
+    if matches!(values.value(&PERIODIC), Some(KeyValue::Switches(periodic)) if periodic != [true; 2]) {
         let error = refused(&PERIODIC, "`domain.periodic` is false, but the bath has no walls");
         errors.push(error.expecting("periodic = [true, true]"));
     }
-    if matches!(values.value(&GRAVITY), Some(Value::Pair(gravity)) if gravity != [0.0; 2]) {
+    if matches!(values.value(&GRAVITY), Some(KeyValue::Pair(gravity)) if gravity != [0.0; 2]) {
         let error =
             refused(&GRAVITY, "`domain.gravity` is not 0, but nothing stops the fall across a periodic side");
         errors.push(error.expecting("gravity = [0.0, 0.0]"));

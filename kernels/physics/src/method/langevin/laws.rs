@@ -3,9 +3,9 @@
 //! A law is a [`PairPotential`] with a cut-off. Everything else, such as limits of the step, the smallest distance at the start and
 //! the suitable searches, follows from the potential.
 
-use crate::method::pairwise::WithLaw;
-use crate::method::{Becomes, Twin};
-use crate::scene::{Binding, Bounds, Fallback, Key, Kind, Overrides, Use, Values};
+use crate::method::pairwise::LawTask;
+use crate::method::{SimplifiedModel, Twin};
+use crate::scene::{Binding, Fallback, Key, KeyValueKind, NumberRange, Overrides, SceneValues, Use};
 use crate::words::{Words, define_words};
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::{CutOff, PairPotential};
@@ -34,15 +34,15 @@ macro_rules! define_pair_laws {
         const WORDS: &[&str] = &[$($($word),+),+];
 
         /// Key of the pair law.
-        pub static LAW: Key = key("kind", Kind::Choice(PairLaw::WORDS), "", "\"wca\"", None, concat!(
+        pub static LAW: Key = key("kind", KeyValueKind::Choice(PairLaw::WORDS), "", "\"wca\"", None, concat!(
             "Pair law: none" $($(, "; ", $word, ", ", $help)+)+, ". The diameter σ is twice particles.radius."
         ));
         /// Key of the energy scale of the pair potential.
-        pub static STRENGTH: Key = key("strength", Kind::Number(Bounds::Positive), "energy", "1.0", Some((&LAW, WORDS)),
+        pub static STRENGTH: Key = key("strength", KeyValueKind::Number(NumberRange::Positive), "energy", "1.0", Some((&LAW, WORDS)),
             "Energy ε of the pair potential; the well depth of Lennard-Jones.");
         $($($(
             #[doc = $doc]
-            pub static $key: Key = key(stringify!($name), Kind::Number($bounds), $unit, stringify!($default),
+            pub static $key: Key = key(stringify!($name), KeyValueKind::Number($bounds), $unit, stringify!($default),
                 Some((&LAW, &[$word])), $doc);
         )*)+)+
 
@@ -84,7 +84,7 @@ macro_rules! define_pair_laws {
 
         impl SweptLaw {
             /// Calls `work` with the concrete law.
-            pub(super) fn with<W: WithLaw>(self, work: W) -> W::Output {
+            pub(super) fn with<W: LawTask>(self, work: W) -> W::Output {
                 match self { $(SweptLaw::$potential(law) => work.with(law),)+ }
             }
 
@@ -116,13 +116,13 @@ macro_rules! define_pair_laws {
         pub(super) const TWINS: &[Twin] = &[
             $($($(Twin {
                 name: $lacks,
-                becomes: Becomes::Overridden(|values| {
+                becomes: SimplifiedModel::Overridden(|values| {
                     (law_of(values)? == PairLaw::$law).then(|| Overrides::new().set(&LAW, PairLaw::$simpler))
                 }),
             },)?)+)+
             Twin {
                 name: "pairs: free particles in the bath",
-                becomes: Becomes::Overridden(|values| {
+                becomes: SimplifiedModel::Overridden(|values| {
                     law_of(values)?.has_pairs().then(|| Overrides::new().set(&LAW, PairLaw::None))
                 }),
             },
@@ -141,7 +141,7 @@ define_pair_laws! {
     }
     Yukawa {
         Yukawa = "yukawa", "the screened repulsion ε (σ/r) exp(−κ (r − σ)), cut off at κ (r − σ) = 7.5 and shifted",
-            keys [SCREENING screening = 5.0, Bounds::AtMost(50.0), "", "Screening κσ of yukawa: σ over the screening length."],
+            keys [SCREENING screening = 5.0, NumberRange::AtMost(50.0), "", "Screening κσ of yukawa: σ over the screening length."],
             simpler [],
             |of, diameter| {
                 let potential = Yukawa::new(of.strength, diameter, of.screening / diameter);
@@ -153,7 +153,7 @@ define_pair_laws! {
 /// Creates a key of the pair law with a default.
 const fn key(
     name: &'static str,
-    kind: Kind,
+    kind: KeyValueKind,
     unit: &'static str,
     default: &'static str,
     used: Use,
@@ -163,7 +163,7 @@ const fn key(
 }
 
 /// Pair law in the values of a scene.
-fn law_of(values: &Values) -> Option<PairLaw> {
+fn law_of(values: &SceneValues) -> Option<PairLaw> {
     PairLaw::parse(&values.choice(&LAW)?)
 }
 
@@ -194,10 +194,10 @@ mod tests {
     use std::marker::PhantomData;
     use stripmine_kernels::backend::Precision;
     use stripmine_kernels::isa::{Array, Memory, Slot};
-    use stripmine_kernels::law::{Asked, Law};
+    use stripmine_kernels::law::{Law, ObservationRequest};
     use stripmine_kernels::mask::Mask;
     use stripmine_kernels::sweep::lattice::forces::Forces;
-    use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+    use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame, LatticeShape};
     use stripmine_kernels::{Execution, InstructionSet, Program};
 
     const DIAMETER: f64 = 0.7;
@@ -237,20 +237,20 @@ mod tests {
     }
 
     /// Execution and instruction set of a sweep.
-    type How = (Execution, InstructionSet);
+    type SweepExecution = (Execution, InstructionSet);
 
     /// Pairs at given distances on a lattice, swept in one precision: repulsive force, energy and virial of each pair.
-    struct Pairs<'d, P>(&'d [f64], How, PhantomData<P>);
+    struct SweptPairs<'d, P>(&'d [f64], SweepExecution, PhantomData<P>);
 
-    impl<P: Precision> WithLaw for Pairs<'_, P> {
+    impl<P: Precision> LawTask for SweptPairs<'_, P> {
         type Output = Vec<[f64; 3]>;
 
         fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Vec<[f64; 3]> {
-            let Pairs(distances, (execution, set), _) = self;
+            let SweptPairs(distances, (execution, set), _) = self;
             let (mask, (sine, cosine)) = (Mask::square(2), 0.4f64.sin_cos());
             // Pairs are farther apart than the mask reaches.
             let shape = LatticeShape::new(5 * distances.len(), 5, &mask, [false; 2]).unwrap();
-            let frame = Frame { origin: [0.0; 2], edge: [DIAMETER; 2] };
+            let frame = LatticeFrame { origin: [0.0; 2], edge: [DIAMETER; 2] };
             let cells = (0..distances.len() as isize).map(|pair| shape.position(5 * pair + 1, 2));
             let column = |value: f64| vec![P::from_f64(value); shape.padded()];
             let [mut x, mut y] = [1e30; 2].map(column);
@@ -268,7 +268,9 @@ mod tests {
                 .write(Slot::new(Array::Energy), &mut energy)
                 .write(Slot::new(Array::Virial), &mut virial);
             let forces = Forces::<P, L>::new(law, &mask, shape, frame, Coordinates::CellRelative);
-            let program = Program::new(forces.asked(Asked { energy: true, ..Asked::default() }));
+            let program = Program::new(
+                forces.asked(ObservationRequest { energy: true, ..ObservationRequest::default() }),
+            );
             program.run(&memory, shape.swept(), execution, set).unwrap();
             let pair = |cell: usize| {
                 let [fx, fy, energy, virial] = [&fx, &fy, &energy, &virial].map(|it| it[cell].to_f64());
@@ -288,8 +290,8 @@ mod tests {
             let distances: Vec<f64> =
                 (0..200).map(|step| near + (1.1 * cutoff - near) * f64::from(step) / 200.0).collect();
             let swept = |how| {
-                let double = law.with(Pairs::<f64>(&distances, how, PhantomData));
-                [double, law.with(Pairs::<f32>(&distances, how, PhantomData))]
+                let double = law.with(SweptPairs::<f64>(&distances, how, PhantomData));
+                [double, law.with(SweptPairs::<f32>(&distances, how, PhantomData))]
             };
             let oracle = swept((Execution::Chained, InstructionSet::Scalar));
             for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {

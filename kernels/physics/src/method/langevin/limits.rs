@@ -1,8 +1,8 @@
 //! Theoretical stability limits of the step.
 
 use super::options::SchemeKind;
-use super::scene::Scene;
-use crate::method::{Beyond, StepLimit};
+use super::scene::LangevinScene;
+use crate::method::{LimitConsequence, StepLimit};
 use crate::number::significant;
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ const HARDEST: f64 = 10.0;
 
 /// Particles of one species in a run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Colliding {
+pub(super) struct CollidingParticles {
     pub(super) diameter: f64,
     pub(super) mass: f64,
     pub(super) count: usize,
@@ -19,8 +19,8 @@ pub(super) struct Colliding {
     pub(super) area: f64,
 }
 
-pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit> {
-    let (dt, Colliding { diameter, mass, .. }) = (scene.dt, particles);
+pub(super) fn step_limits(scene: &LangevinScene, particles: CollidingParticles) -> Vec<StepLimit> {
+    let (dt, CollidingParticles { diameter, mass, .. }) = (scene.dt, particles);
     let limit = |name, step: f64, beyond, why: String| StepLimit {
         name,
         step,
@@ -32,7 +32,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
     let mut limits = vec![];
     if scene.law.has_pairs() {
         let (step, force) = bound(scene, diameter, mass);
-        limits.push(limit("source-bound", step, Beyond::Unstable, {
+        limits.push(limit("source-bound", step, LimitConsequence::Unstable, {
             format!(
                 "√(2 m r_c/F) with F = {} at a distance of σ: necessary, but far from sufficient",
                 significant(force, 5)
@@ -40,7 +40,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
         }));
         let energy = hardest(scene, particles);
         let (step, nearest) = stiffest(scene, particles, energy);
-        limits.push(limit("hardest-collision", step, Beyond::Unstable, {
+        limits.push(limit("hardest-collision", step, LimitConsequence::Unstable, {
             format!(
                 "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: a longer step ejects pairs of this stiffness",
                 significant(energy, 3),
@@ -53,7 +53,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
         limits.push(limit(
             "friction",
             step,
-            Beyond::Unstable,
+            LimitConsequence::Unstable,
             "2 m/γ: with a longer step friction reverses the velocity".to_owned(),
         ));
     }
@@ -61,7 +61,7 @@ pub(super) fn step_limits(scene: &Scene, particles: Colliding) -> Vec<StepLimit>
 }
 
 /// LAN17's bound of the step (time), and the force in it.
-pub(super) fn bound(scene: &Scene, diameter: f64, mass: f64) -> (f64, f64) {
+pub(super) fn bound(scene: &LangevinScene, diameter: f64, mass: f64) -> (f64, f64) {
     let law = scene.law_at(diameter);
     let force = law.potential().force(diameter);
     ((2.0 * mass * law.cutoff() / force).sqrt(), force)
@@ -70,7 +70,10 @@ pub(super) fn bound(scene: &Scene, diameter: f64, mass: f64) -> (f64, f64) {
 /// Energy, in kT, of the hardest collision expected in a run: one in M collisions exceeds ln M.
 ///
 /// Each of N particles collides 2 √π n σ √(kT/m) times per unit of time at a number density n, as in a dilute gas. The logarithm hardly depends on this rate.
-fn hardest(scene: &Scene, Colliding { diameter, mass, count, area }: Colliding) -> f64 {
+fn hardest(
+    scene: &LangevinScene,
+    CollidingParticles { diameter, mass, count, area }: CollidingParticles,
+) -> f64 {
     let [count, time] = [count as f64, scene.run.steps as f64 * scene.dt];
     let rate = 2.0 * (PI * scene.bath.temperature / mass).sqrt() * diameter * count / area;
     libm::log(0.5 * count * rate * time).max(HARDEST)
@@ -78,7 +81,11 @@ fn hardest(scene: &Scene, Colliding { diameter, mass, count, area }: Colliding) 
 
 /// Stability limit (time) of velocity Verlet for the stiffness of a pair at the end of its hardest collision, of an energy in kT; and the
 /// distance of the two there (length).
-fn stiffest(scene: &Scene, Colliding { diameter, mass, .. }: Colliding, energy: f64) -> (f64, f64) {
+fn stiffest(
+    scene: &LangevinScene,
+    CollidingParticles { diameter, mass, .. }: CollidingParticles,
+    energy: f64,
+) -> (f64, f64) {
     let law = scene.law_at(diameter);
     let nearest = law.potential().closest((energy * scene.bath.temperature).max(scene.parameters.strength));
     (2.0 * (0.5 * mass / law.potential().curvature(nearest)).sqrt(), nearest)
@@ -93,9 +100,9 @@ mod tests {
     #[test]
     fn longer_runs_have_harder_collisions() {
         let of_time = |time: f64| {
-            let mut scene = Scene { dt: 0.01, ..Scene::default() };
+            let mut scene = LangevinScene { dt: 0.01, ..LangevinScene::default() };
             scene.run.steps = (time / scene.dt).round() as u64;
-            let particles = Colliding { diameter: 1.0, mass: 1.0, count: 1000, area: 1000.0 };
+            let particles = CollidingParticles { diameter: 1.0, mass: 1.0, count: 1000, area: 1000.0 };
             (hardest(&scene, particles), stiffest(&scene, particles, hardest(&scene, particles)).0)
         };
         let (energy, step) = of_time(1000.0);

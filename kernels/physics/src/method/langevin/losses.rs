@@ -1,6 +1,6 @@
 //! Record of the particles lost from the box, with time and position.
 
-use crate::io::checkpoint::Column;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::restored::{find_column, find_counts};
 use crate::number::significant;
 use serde::Serialize;
@@ -77,9 +77,9 @@ impl Losses {
     }
 
     /// Columns for a checkpoint.
-    pub(super) fn columns(&self) -> [(String, Column); 4] {
-        let whole = |of: fn(&Loss) -> u64| Column::U64(self.all.iter().map(of).collect());
-        let real = |of: fn(&Loss) -> f64| Column::F64(self.all.iter().map(of).collect());
+    pub(super) fn columns(&self) -> [(String, CheckpointColumn); 4] {
+        let whole = |of: fn(&Loss) -> u64| CheckpointColumn::U64(self.all.iter().map(of).collect());
+        let real = |of: fn(&Loss) -> f64| CheckpointColumn::F64(self.all.iter().map(of).collect());
         [
             (NAMES[0].to_owned(), whole(|loss| loss.particle.into())),
             (NAMES[1].to_owned(), whole(|loss| loss.step)),
@@ -96,7 +96,7 @@ impl Losses {
         &mut self,
         steps: u64,
         there: &BTreeSet<u32>,
-        columns: &[(String, Column)],
+        columns: &[(String, CheckpointColumn)],
     ) -> Result<(), String> {
         let count = columns.iter().find(|(name, _)| name == NAMES[0]).map_or(0, |(_, column)| column.len());
         let ids = find_counts(columns, NAMES[0], count, u32::MAX.into())?;

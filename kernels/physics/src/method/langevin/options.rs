@@ -4,7 +4,7 @@ use crate::words::define_words;
 
 define_words! {
     /// Pair search.
-    pub enum By {
+    pub enum PairSearchKind {
         /// The fastest search that the scene allows.
         Auto = "auto",
         /// Lattice of cells of one particle each.

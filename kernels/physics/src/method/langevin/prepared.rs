@@ -1,17 +1,19 @@
 //! Prepared scene of Langevin dynamics: facts, memory forecast, settings and the start of a simulation.
 
-use super::checked::Checked;
-use super::dynamics::InBath;
-use super::found::Found;
+use super::checked::CheckedLangevin;
+use super::dynamics::BathDynamics;
+use super::found::ChosenSearch;
 use super::losses;
-use super::options::By;
+use super::options::PairSearchKind;
 use super::programs::programs;
-use super::scene::Scene;
+use super::scene::LangevinScene;
 use super::simulation;
-use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
+use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
-use crate::method::pairwise::{Dynamics, ToReach};
-use crate::method::{Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, VectorProgram};
+use crate::method::pairwise::{Dynamics, PairForcesTask};
+use crate::method::{
+    Fact, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable, VectorProgram,
+};
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::structure::PairForces;
@@ -24,7 +26,7 @@ use stripmine_kernels::isa::aligned_column::taken as row;
 use stripmine_kernels::noise::NoiseSource;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
-impl Checked {
+impl CheckedLangevin {
     /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let (scene, word) = (&self.scene, self.scene.law.word());
@@ -60,13 +62,15 @@ impl Checked {
     }
 
     fn facts(&self) -> Vec<Fact> {
-        let Checked { scene, domain, particles, diameter, reach, .. } = self;
+        let CheckedLangevin { scene, domain, particles, diameter, reach, .. } = self;
         let ([x, y], count) = (domain.lengths(), particles.len());
         let density = count as f64 * diameter * diameter / domain.area();
         let by = match &self.found {
-            Found::Lattice(shape, _) => format!("lattice of {} × {} cells", shape.columns(), shape.rows()),
-            Found::Sectors(grid) => format!("{} × {} sectors", grid.counts[0], grid.counts[1]),
-            Found::Lists(_, skin) => {
+            ChosenSearch::Lattice(shape, _) => {
+                format!("lattice of {} × {} cells", shape.columns(), shape.rows())
+            }
+            ChosenSearch::Sectors(grid) => format!("{} × {} sectors", grid.counts[0], grid.counts[1]),
+            ChosenSearch::Lists(_, skin) => {
                 format!("neighbour lists with a skin of {}", significant(*skin, 5))
             }
         };
@@ -96,15 +100,17 @@ impl Checked {
         facts
     }
 
-    fn memory(&self) -> Foreseen {
+    fn memory(&self) -> MemoryForecast {
         let count = self.particles.len() as f64;
         // Rows of the state and the sums, one more for sorting each of them, and the positions of the last list build.
-        let rows = if matches!(self.found, Found::Lists(..)) { 11.0 } else { 9.0 };
+        let rows = if matches!(self.found, ChosenSearch::Lists(..)) { 11.0 } else { 9.0 };
         // Ids and numbers; neighbour lists.
         let (engine, cells) = match &self.found {
-            Found::Sectors(grid) => (99.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
-            Found::Lists(grid, _) => (128.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
-            Found::Lattice(shape, _) => {
+            ChosenSearch::Sectors(grid) => (99.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
+            ChosenSearch::Lists(grid, _) => {
+                (128.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64)
+            }
+            ChosenSearch::Lattice(shape, _) => {
                 // A number and a bit per cell; copies of the positions if the lattice is not sparse.
                 let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 2.0 };
                 let cells = shape.padded() as f64;
@@ -113,17 +119,17 @@ impl Checked {
         };
         // Three copies of the scene's particles, another while they are observed, the frame being written, and the sorting order.
         let particles = (6.0 * size_of::<Particle>() as f64 + 2.0 * 16.0 + 4.0) * count;
-        Foreseen {
+        MemoryForecast {
             needed: (PROGRAM + rows * row(8.0 * count) + engine + cells + particles) as u64,
             available: available(),
             what: format!("{count} particles"),
             remedy: "use fewer particles",
-            ranks: OfRanks::in_bands(count, cells, [rows, 8.0 * count]),
+            ranks: RankMemory::in_bands(count, cells, [rows, 8.0 * count]),
         }
     }
 
     fn settings(&self) -> Map<String, Value> {
-        let Checked { scene, particles, domain, diameter, .. } = self;
+        let CheckedLangevin { scene, particles, domain, diameter, .. } = self;
         let density = particles.len() as f64 * diameter * diameter / domain.area();
         let settings = [
             ("density", json!(density)),
@@ -138,7 +144,7 @@ impl Checked {
     }
 }
 
-impl Startable for Checked {
+impl Startable for CheckedLangevin {
     fn particles(&self) -> &Particles {
         &self.particles
     }
@@ -149,7 +155,7 @@ impl Startable for Checked {
 
     fn programs_note(&self) -> Option<String> {
         let by = self.scene.by;
-        (self.has_pairs() && by != By::Lattice).then(|| {
+        (self.has_pairs() && by != PairSearchKind::Lattice).then(|| {
             format!(
                 "the programs are those of search.by = \"lattice\"; a run of the scene finds pairs by {}",
                 by.word()
@@ -165,9 +171,9 @@ impl Startable for Checked {
     }
 
     fn pair_forces(&self) -> Option<PairForces> {
-        let particles = InBath::of(self);
+        let particles = BathDynamics::of(self);
         Some(if self.has_pairs() {
-            particles.with_law(ToReach(self.reach))
+            particles.with_law(PairForcesTask(self.reach))
         } else {
             PairForces { reach: 0.0, of: Arc::new(|_| [0.0; 2]) }
         })
@@ -177,25 +183,25 @@ impl Startable for Checked {
         true
     }
 
-    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+    fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         Ok(Box::new(simulation::begin(self, purpose)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {
-        Checked { particles, ..self.clone() }.prepared()
+        CheckedLangevin { particles, ..self.clone() }.prepared()
     }
 
     fn with_noise(&self, seed: u64, parts: u32) -> Option<Prepared> {
-        let scene = Scene { noise_seed: Some(seed), ..self.scene.clone() };
+        let scene = LangevinScene { noise_seed: Some(seed), ..self.scene.clone() };
         let has_noise = scene.bath.friction * scene.bath.temperature > 0.0 && parts > 0;
         let noise = NoiseSource { seed, parts };
-        has_noise.then(|| Checked { scene, seed, noise, ..self.clone() }.prepared())
+        has_noise.then(|| CheckedLangevin { scene, seed, noise, ..self.clone() }.prepared())
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::method::{METHODS, Prepared, Purpose, Until, load};
+    use crate::method::{METHODS, Prepared, StartPurpose, Until, load};
     use crate::particles::{Particle, Particles};
     use std::sync::atomic::AtomicBool;
 
@@ -208,7 +214,7 @@ mod tests {
     /// Returns the particles after a time, with noise of a seed and a number of parts.
     fn after(prepared: &Prepared, time: f64, (seed, parts): (u64, u32)) -> Particles {
         let coupled = prepared.model.with_noise(seed, parts).unwrap();
-        let mut simulation = coupled.start(Purpose::Measurement).unwrap();
+        let mut simulation = coupled.start(StartPurpose::Measurement).unwrap();
         let steps = (time / simulation.time_step().unwrap()).round() as u64;
         simulation.advance(&[Until::Steps(steps)], &AtomicBool::new(false)).unwrap();
         simulation.particles()
@@ -264,7 +270,7 @@ mod tests {
     #[test]
     fn a_single_noise_part_changes_nothing() {
         let own = prepared("langevin-dense", &["particles.count=100", "domain.sides=[12.0, 12.0]"], 0.005);
-        let mut simulation = own.start(Purpose::Measurement).unwrap();
+        let mut simulation = own.start(StartPurpose::Measurement).unwrap();
         simulation.advance(&[Until::Steps(20)], &AtomicBool::new(false)).unwrap();
         assert_eq!(simulation.particles().checksum(), after(&own, 0.1, (1, 1)).checksum());
         for without in ["law.drag=0", "law.bath_temperature=0"] {

@@ -1,15 +1,15 @@
 //! Force program of a pair law for the vector machine, over the offsets of a mask on the lattice.
 
-use super::checked::Checked;
-use super::dynamics::InBath;
+use super::checked::CheckedLangevin;
+use super::dynamics::BathDynamics;
 use super::found::widest_cell;
 use crate::method::VectorProgram;
-use crate::method::pairwise::{Dynamics, WithLaw};
+use crate::method::pairwise::{Dynamics, LawTask};
 use stripmine_kernels::law::Law;
-use stripmine_kernels::ledger::Length;
+use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::forces::Forces;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame, LatticeShape};
 use stripmine_kernels::{Program, Runnable};
 
 /// Largest half-width of a mask, in cells.
@@ -17,7 +17,7 @@ const WIDEST: u32 = 12;
 
 /// Returns the lattice whose cells hardly any two particles share, with the smallest mask that covers the cut-off; none if the box is
 /// too small.
-pub(super) fn lattice(checked: &Checked) -> Option<(LatticeShape, Frame, Mask)> {
+pub(super) fn lattice(checked: &CheckedLangevin) -> Option<(LatticeShape, LatticeFrame, Mask)> {
     let (domain, reach) = (checked.domain, checked.reach);
     let largest = widest_cell(&checked.scene, checked.diameter);
     let half_width = (1..=WIDEST).find(|&width| reach / f64::from(width) <= largest)?;
@@ -30,27 +30,27 @@ pub(super) fn lattice(checked: &Checked) -> Option<(LatticeShape, Frame, Mask)> 
     let mask = Mask::square(half_width);
     let [columns, rows] = counts.map(|count| count as usize);
     let shape = LatticeShape::new(columns, rows, &mask, domain.periodic()).ok()?;
-    Some((shape, Frame { origin: domain.corner(), edge }, mask))
+    Some((shape, LatticeFrame { origin: domain.corner(), edge }, mask))
 }
 
 /// Programs of the forces of a step; none without pairs or without a lattice.
-pub(super) fn programs(checked: &Checked) -> Vec<VectorProgram> {
+pub(super) fn programs(checked: &CheckedLangevin) -> Vec<VectorProgram> {
     let Some((shape, frame, mask)) = checked.has_pairs().then(|| lattice(checked)).flatten() else {
         return vec![];
     };
-    let length = Length::SweptCells;
-    let program = InBath::of(checked).with_law(OnLattice(&mask, shape, frame));
+    let length = VectorLength::SweptCells;
+    let program = BathDynamics::of(checked).with_law(LatticeForceProgram(&mask, shape, frame));
     vec![VectorProgram { part: "forces", length: length.symbol(), n: shape.swept().len(), times: 1, program }]
 }
 
 /// Builds the program of the forces of a law on a lattice.
-struct OnLattice<'m>(&'m Mask, LatticeShape, Frame);
+struct LatticeForceProgram<'m>(&'m Mask, LatticeShape, LatticeFrame);
 
-impl WithLaw for OnLattice<'_> {
+impl LawTask for LatticeForceProgram<'_> {
     type Output = Box<dyn Runnable>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Box<dyn Runnable> {
-        let OnLattice(mask, shape, frame) = self;
+        let LatticeForceProgram(mask, shape, frame) = self;
         Box::new(Program::new(Forces::<f64, _>::new(law, mask, shape, frame, Coordinates::CellRelative)))
     }
 }
@@ -62,14 +62,14 @@ mod tests {
     use super::super::laws::PairLaw;
     use super::*;
     use crate::particles::{Particle, Particles};
-    use crate::scene::Values;
+    use crate::scene::SceneValues;
     use crate::words::Words;
     use stripmine_kernels::isa::{Array, Memory, Slot};
-    use stripmine_kernels::noise::{Purpose, normals};
+    use stripmine_kernels::noise::{RandomPurpose, normals};
     use stripmine_kernels::{Execution, InstructionSet};
 
     /// Forces from the potential, summed over all pairs.
-    fn written_down(checked: &Checked, particles: &Particles) -> Vec<[f64; 2]> {
+    fn written_down(checked: &CheckedLangevin, particles: &Particles) -> Vec<[f64; 2]> {
         let law = checked.scene.law_at(checked.diameter);
         let force = |a: &Particle| {
             let mut sum = [0.0; 2];
@@ -95,12 +95,12 @@ mod tests {
                 "particles.count=200".to_owned(),
                 "domain.sides=[18.0, 18.0]".to_owned(),
             ];
-            let values = Values::load("langevin-dense", &overrides, &[&VOCABULARY]).unwrap();
+            let values = SceneValues::load("langevin-dense", &overrides, &[&VOCABULARY]).unwrap();
             let checked = checked(values).unwrap();
             let (shape, frame, mask) = lattice(&checked).unwrap();
             let mut particles = checked.particles.clone();
             for particle in particles.all_mut() {
-                let off = normals(1, Purpose::Test, particle.id, 0);
+                let off = normals(1, RandomPurpose::Test, particle.id, 0);
                 (0..2).for_each(|axis| particle.position[axis] += 0.06 * off[axis]);
                 particle.position = checked.domain.wrapped(particle.position);
             }
@@ -121,7 +121,7 @@ mod tests {
             for image in shape.images() {
                 (x[image.cell], y[image.cell]) = (x[image.source], y[image.source]);
             }
-            let program = InBath::of(&checked).with_law(OnLattice(&mask, shape, frame));
+            let program = BathDynamics::of(&checked).with_law(LatticeForceProgram(&mask, shape, frame));
             let expected = written_down(&checked, &particles);
             let largest = expected.iter().flatten().fold(0.0, |most: f64, it| most.max(it.abs()));
             assert!(largest > 0.1);

@@ -1,12 +1,12 @@
 //! Observables of Langevin dynamics: one list of quantities, each with its definition.
 
-use crate::method::Kind::{Counter, Instant, Time};
+use crate::method::QuantityKind::{Counter, Instant, Time};
 use crate::method::observed::observables;
-use crate::method::{Observable, Quantity, quantities};
+use crate::method::{MethodObservable, ObservedQuantity, quantities};
 
 /// Observation of the system at a moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct LangevinObservation {
     pub(super) time: f64,
     pub(super) kinetic: f64,
     pub(super) potential: f64,
@@ -19,7 +19,7 @@ pub(super) struct Seen {
 }
 
 /// Observables, in the order of the columns.
-pub(super) const OBSERVABLES: [Observable<Seen>; 10] = observables! {
+pub(super) const OBSERVABLES: [MethodObservable<LangevinObservation>; 10] = observables! {
     "time", "time", Time, |seen| seen.time, "Time.";
     "kinetic", "energy", Instant, |seen| seen.kinetic, "Kinetic energy. With baoab it uses the velocities after the bath, which have m⟨v²⟩ = kT up to orders above dt²; those at the end of the step, in trajectory.xyz, are too low by dt²⟨F²⟩/(4 m).";
     "potential", "energy", Instant, |seen| seen.potential, "Potential energy of the pairs.";
@@ -33,4 +33,4 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 10] = observables! {
 };
 
 /// Names, units and meanings of the observables.
-pub(super) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);
+pub(super) const QUANTITIES: &[ObservedQuantity] = &quantities(&OBSERVABLES);

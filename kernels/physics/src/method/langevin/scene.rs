@@ -2,22 +2,23 @@
 
 use super::keys::*;
 use super::laws::{LAW, PairLaw, Parameters, SweptLaw};
-use super::options::{By, SchemeKind, SortKind};
+use super::options::{PairSearchKind, SchemeKind, SortKind};
 use crate::scene::{
-    Binding, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_heading,
+    Binding, DiscStart, Output, Precision, RunKeys, SceneDomain, WallMotion, Write, bind_arithmetic,
+    bind_heading,
 };
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::integrator::langevin::Bath;
 
 /// Scene of the method, in its own units; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Scene {
+pub(super) struct LangevinScene {
     /// Label of the unit system.
     pub units: String,
     /// The box.
-    pub domain: Domain,
+    pub domain: SceneDomain,
     /// Particles at the start.
-    pub start: Start,
+    pub start: DiscStart,
     /// Pair law.
     pub law: PairLaw,
     /// Parameters of the pair law.
@@ -27,7 +28,7 @@ pub(super) struct Scene {
     /// Seed of the noise, if it differs from that of the start.
     pub(crate) noise_seed: Option<u64>,
     /// Pair search.
-    pub by: By,
+    pub by: PairSearchKind,
     /// Sectors along each side, if given.
     pub per_side: Option<u64>,
     /// Condition for sorting particles by sector.
@@ -43,7 +44,7 @@ pub(super) struct Scene {
     /// Instruction set; the widest available if none.
     pub instruction_set: Option<InstructionSet>,
     /// Duration and output intervals.
-    pub run: Run,
+    pub run: RunKeys,
     /// Number of particles that may be lost.
     pub(crate) most_lost: u64,
     /// Output files.
@@ -52,17 +53,17 @@ pub(super) struct Scene {
     pub losses: bool,
 }
 
-impl Default for Scene {
+impl Default for LangevinScene {
     fn default() -> Self {
-        Scene {
+        LangevinScene {
             units: String::new(),
-            domain: Domain::default(),
-            start: Start::default(),
+            domain: SceneDomain::default(),
+            start: DiscStart::default(),
             law: PairLaw::Wca,
             parameters: Parameters::default(),
             bath: Bath { friction: 1.0, temperature: 1.0 },
             noise_seed: None,
-            by: By::Auto,
+            by: PairSearchKind::Auto,
             per_side: None,
             sort: SortKind::default(),
             skin: None,
@@ -70,7 +71,7 @@ impl Default for Scene {
             dt: 0.0,
             precision: Precision::F64,
             instruction_set: None,
-            run: Run::default(),
+            run: RunKeys::default(),
             most_lost: 0,
             output: Output::default(),
             losses: true,
@@ -78,7 +79,7 @@ impl Default for Scene {
     }
 }
 
-impl Scene {
+impl LangevinScene {
     /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
@@ -91,11 +92,11 @@ impl Scene {
         binding.number(&BATH_TEMPERATURE, &mut self.bath.temperature);
         binding.whole_if_any(&NOISE_SEED, &mut self.noise_seed);
         binding.choice(&SEARCH, &mut self.by);
-        if matches!(self.by, By::Auto | By::Sectors) {
+        if matches!(self.by, PairSearchKind::Auto | PairSearchKind::Sectors) {
             binding.whole_if_any(&PER_SIDE, &mut self.per_side);
             binding.choice(&SORT, &mut self.sort);
         }
-        if matches!(self.by, By::Auto | By::NeighborList) {
+        if matches!(self.by, PairSearchKind::Auto | PairSearchKind::NeighborList) {
             binding.number_if_any(&SKIN, &mut self.skin);
         }
         binding.choice(&INTEGRATOR, &mut self.scheme);

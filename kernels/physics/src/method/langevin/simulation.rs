@@ -1,20 +1,22 @@
 //! Simulation of particles in a bath. Particles thrown out of the box are counted, and the run continues without them.
 
-use super::checked::Checked;
+use super::checked::CheckedLangevin;
 use super::dynamics::{is_loss, stepper};
 use super::losses::Losses;
-use super::quantities::{OBSERVABLES, Seen};
-use crate::io::checkpoint::Column;
-use crate::method::pairwise::Losing;
+use super::quantities::{LangevinObservation, OBSERVABLES};
+use crate::io::checkpoint::CheckpointColumn;
+use crate::method::pairwise::RemovableDiscs;
 use crate::method::stepped::{Stepped, Stepwise};
-use crate::method::{Clock, Failure, Observable, PerParticle, Purpose, RunWarning, Snapshot};
+use crate::method::{
+    Clock, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot, StartPurpose,
+};
 use crate::number::significant;
 use crate::observe::{AxisMotion, temperature};
-use crate::particles::{Particle, Particles, States};
+use crate::particles::{GrainStates, Particle, Particles};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
-use stripmine_kernels::law::Asked;
+use stripmine_kernels::law::ObservationRequest;
 
 /// Columns that are sums of forces; a repeated step starts them at 0.
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
@@ -24,9 +26,9 @@ const LISTS_MADE: &str = "lists_made";
 const OF_PAIRS: [&str; 2] = ["potential", "virial"];
 
 /// State of a run beside its particles.
-pub(super) struct InRun {
-    checked: Checked,
-    purpose: Purpose,
+pub(super) struct LangevinRunState {
+    checked: CheckedLangevin,
+    purpose: StartPurpose,
     /// Remaining particles, in the state of the start.
     start: Particles,
     losses: Losses,
@@ -39,28 +41,35 @@ pub(super) struct InRun {
 }
 
 /// Running simulation: stepper and state of the run.
-type Running = Stepped<InRun>;
+type LangevinSimulation = Stepped<LangevinRunState>;
 
 /// Creates the simulation at the start.
 ///
 /// # Errors
 /// [`Failure`] if the start breaks a precondition.
-pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Running, Failure> {
-    let follows = purpose == Purpose::Run;
+pub(super) fn begin(
+    checked: &CheckedLangevin,
+    purpose: StartPurpose,
+) -> Result<LangevinSimulation, PhysicsFailure> {
+    let follows = purpose == StartPurpose::Run;
     let start = checked.particles.clone();
     let stepper = stepper(checked, start.clone(), follows)?;
     let losses = Losses::new(follows && checked.scene.losses);
     let checked = checked.clone();
-    let in_run = InRun { checked, purpose, start, losses, of_pairs: [0.0; 2], work: 0, made_before: 0 };
+    let in_run =
+        LangevinRunState { checked, purpose, start, losses, of_pairs: [0.0; 2], work: 0, made_before: 0 };
     let mut running = Stepped::new(stepper, in_run);
     running.compute_forces()?;
     Ok(running)
 }
 
-impl Running {
+impl LangevinSimulation {
     /// Computes all forces at the current positions.
-    fn compute_forces(&mut self) -> Result<(), Failure> {
-        let asked = Asked { energy: self.method.purpose == Purpose::Run, ..Asked::default() };
+    fn compute_forces(&mut self) -> Result<(), PhysicsFailure> {
+        let asked = ObservationRequest {
+            energy: self.method.purpose == StartPurpose::Run,
+            ..ObservationRequest::default()
+        };
         if self.method.checked.has_pairs() {
             self.method.of_pairs = self.state.compute_forces(asked)?.energy;
         } else {
@@ -70,12 +79,12 @@ impl Running {
     }
 
     /// Removes the particles named by a failure and continues.
-    fn lose(&mut self, failure: Failure) -> Result<(), Failure> {
+    fn lose(&mut self, failure: PhysicsFailure) -> Result<(), PhysicsFailure> {
         let unfit: BTreeSet<usize> = self.state.unfit().into_iter().collect();
         let standing = self.state.unwrapped();
         self.state.check_ranks()?;
         if unfit.is_empty() {
-            return Err(Failure { kind: super::LOST, ..failure });
+            return Err(PhysicsFailure { kind: super::LOST, ..failure });
         }
         let clock = self.clock();
         for &place in &unfit {
@@ -87,21 +96,21 @@ impl Running {
             return Err(self.too_many(failure, lost, most));
         }
         self.without(&|place, _| unfit.contains(&place)).map_err(|why| {
-            Failure::new(super::LOST, why, "this is a bug: please report it with the scene").at(clock)
+            PhysicsFailure::new(super::LOST, why, "this is a bug: please report it with the scene").at(clock)
         })?;
         self.state.settle()
     }
 
-    fn too_many(&self, failure: Failure, lost: u64, most: u64) -> Failure {
+    fn too_many(&self, failure: PhysicsFailure, lost: u64, most: u64) -> PhysicsFailure {
         let first = failure.culprits.first().map(|culprit| format!(", now {culprit}")).unwrap_or_default();
         let message = format!("{lost} particles were lost{first}; run.most_lost = {most}");
         let remedy = self.remedy(&failure);
-        let failure = Failure { message, remedy, kind: super::LOST, ..failure };
+        let failure = PhysicsFailure { message, remedy, kind: super::LOST, ..failure };
         failure.with([("lost", lost as f64), ("most_lost", most as f64)])
     }
 
     /// Returns the remedy for the losses of a failure.
-    fn remedy(&self, failure: &Failure) -> String {
+    fn remedy(&self, failure: &PhysicsFailure) -> String {
         let dt = self.method.checked.scene.dt;
         let shortest =
             self.method.checked.limits().iter().map(|limit| limit.step).fold(f64::INFINITY, f64::min);
@@ -133,12 +142,12 @@ impl Running {
             all.iter().enumerate().map(|(place, particle)| !leaves(place, particle)).collect();
         let start = all.iter().zip(&stays).filter(|(_, stays)| **stays).map(|(particle, _)| *particle);
         let start = Particles::new(start.collect());
-        let columns: Vec<(String, Column)> =
+        let columns: Vec<(String, CheckpointColumn)> =
             self.state.columns().into_iter().map(|(name, column)| kept(name, column, &stays)).collect();
         self.state.check_ranks().map_err(|failure| failure.what())?;
         let elapsed = self.state.elapsed();
         let (steps, timings, made) = (elapsed.steps, elapsed.timings, self.lists_made());
-        let follows = self.method.purpose == Purpose::Run;
+        let follows = self.method.purpose == StartPurpose::Run;
         self.state.end();
         self.state =
             stepper(&self.method.checked, start.clone(), follows).map_err(|failure| failure.what())?;
@@ -178,7 +187,7 @@ impl Running {
 }
 
 /// Keeps the entries of the remaining particles; sums of forces restart at 0. Columns without one entry per particle are unchanged.
-fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
+fn kept(name: String, column: CheckpointColumn, stays: &[bool]) -> (String, CheckpointColumn) {
     fn of<T: Copy>(values: Vec<T>, stays: &[bool]) -> Vec<T> {
         values.into_iter().zip(stays).filter(|(_, stays)| **stays).map(|(value, _)| value).collect()
     }
@@ -187,19 +196,19 @@ fn kept(name: String, column: Column, stays: &[bool]) -> (String, Column) {
     }
     let is_sum = SUMS.contains(&name.as_str());
     let column = match column {
-        Column::F64(values) if is_sum => Column::F64(of(vec![0.0; values.len()], stays)),
-        Column::F32(values) if is_sum => Column::F32(of(vec![0.0; values.len()], stays)),
-        Column::F64(values) => Column::F64(of(values, stays)),
-        Column::F32(values) => Column::F32(of(values, stays)),
-        Column::U32(values) => Column::U32(of(values, stays)),
-        Column::U64(values) => Column::U64(of(values, stays)),
+        CheckpointColumn::F64(values) if is_sum => CheckpointColumn::F64(of(vec![0.0; values.len()], stays)),
+        CheckpointColumn::F32(values) if is_sum => CheckpointColumn::F32(of(vec![0.0; values.len()], stays)),
+        CheckpointColumn::F64(values) => CheckpointColumn::F64(of(values, stays)),
+        CheckpointColumn::F32(values) => CheckpointColumn::F32(of(values, stays)),
+        CheckpointColumn::U32(values) => CheckpointColumn::U32(of(values, stays)),
+        CheckpointColumn::U64(values) => CheckpointColumn::U64(of(values, stays)),
     };
     (name, column)
 }
 
-impl Running {
+impl LangevinSimulation {
     /// Current observation.
-    fn seen(&self) -> Seen {
+    fn seen(&self) -> LangevinObservation {
         let (particles, mass) = (self.state.unwrapped(), self.method.checked.mass);
         let count = particles.len() as f64;
         let velocities = || particles.all().iter().map(Particle::planar_velocity);
@@ -216,7 +225,7 @@ impl Running {
         let kinetic = 0.5 * mass * thermal.iter().map(|[u, v]| u * u + v * v).sum::<f64>();
         let [potential, virial] = self.method.of_pairs;
         let square = self.displacements(&particles).iter().map(|[x, y]| x * x + y * y).sum::<f64>();
-        Seen {
+        LangevinObservation {
             time: self.clock().time,
             kinetic,
             potential,
@@ -229,7 +238,7 @@ impl Running {
     }
 }
 
-impl PerParticle for Running {
+impl PerParticle for LangevinSimulation {
     fn particles(&self) -> Particles {
         self.state.particles()
     }
@@ -238,7 +247,7 @@ impl PerParticle for Running {
         self.state.check_ranks().is_ok()
     }
 
-    fn states(&self, states: &mut States) {
+    fn states(&self, states: &mut GrainStates) {
         // The stepper numbers only the remaining particles.
         match self.method.start.len() == self.method.checked.particles.len() {
             true => self.state.states(states),
@@ -263,12 +272,12 @@ impl PerParticle for Running {
     }
 }
 
-impl Stepwise for InRun {
-    type State = Box<dyn Losing>;
-    type Seen = Seen;
-    const OBSERVABLES: &'static [Observable<Seen>] = &OBSERVABLES;
+impl Stepwise for LangevinRunState {
+    type State = Box<dyn RemovableDiscs>;
+    type Seen = LangevinObservation;
+    const OBSERVABLES: &'static [MethodObservable<LangevinObservation>] = &OBSERVABLES;
 
-    fn step(run: &mut Stepped<Self>, _interrupted: &AtomicBool) -> Result<bool, Failure> {
+    fn step(run: &mut Stepped<Self>, _interrupted: &AtomicBool) -> Result<bool, PhysicsFailure> {
         let mut done = run.state.advance().map(drop);
         loop {
             match done.and_then(|()| run.compute_forces()) {
@@ -281,7 +290,7 @@ impl Stepwise for InRun {
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Seen) -> R) -> R {
+    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&LangevinObservation) -> R) -> R {
         work(&run.seen())
     }
 
@@ -358,7 +367,7 @@ impl Stepwise for InRun {
     }
 
     fn in_words(run: &Stepped<Self>) -> String {
-        let Seen { temperature, pressure, msd, .. } = run.seen();
+        let LangevinObservation { temperature, pressure, msd, .. } = run.seen();
         format!(
             "{} particles, {} lost{}; temperature {}, pressure {}, mean square displacement {}",
             run.left(),

@@ -3,10 +3,10 @@
 use super::checked::prepare;
 use super::keys::{BATH_TEMPERATURE, DRAG, INTEGRATOR, SEARCH};
 use super::laws::STRENGTH;
-use super::options::{By, SchemeKind};
+use super::options::{PairSearchKind, SchemeKind};
 use crate::method::trials::settings;
-use crate::method::{Axis, Decides, Parameter, Prepared, SMALLEST_RADIUS, Trials};
-use crate::scene::{DT, Key, Overrides, PRECISION, Precision, Values};
+use crate::method::{ChoiceEffect, Parameter, Prepared, SMALLEST_RADIUS, SettingAxis, Trials};
+use crate::scene::{DT, Key, Overrides, PRECISION, Precision, SceneValues};
 
 /// Trial configurations of particles in a bath.
 pub(super) static TRIALS: Trials = Trials {
@@ -30,19 +30,19 @@ pub(super) static TRIALS: Trials = Trials {
     at_any_step: prepare,
 };
 
-pub(super) const AXES: &[Axis] = &[
-    Axis {
+pub(super) const AXES: &[SettingAxis] = &[
+    SettingAxis {
         name: "integrator",
-        decides: Decides::Order,
+        decides: ChoiceEffect::Order,
         settings: settings! {
             "baoab" [INTEGRATOR = SchemeKind::Baoab],
             "stochastic" [INTEGRATOR = SchemeKind::Stochastic],
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
-    Axis {
+    SettingAxis {
         name: "precision",
-        decides: Decides::Digits,
+        decides: ChoiceEffect::Digits,
         settings: settings! {
             "f64" [PRECISION = Precision::F64],
             "mixed" [PRECISION = Precision::Mixed],
@@ -50,13 +50,13 @@ pub(super) const AXES: &[Axis] = &[
         },
         own: |prepared| setting_of(prepared, "precision"),
     },
-    Axis {
+    SettingAxis {
         name: "search",
-        decides: Decides::Cost,
+        decides: ChoiceEffect::Cost,
         settings: settings! {
-            "neighbor-list" [SEARCH = By::NeighborList],
-            "sectors" [SEARCH = By::Sectors],
-            "lattice" [SEARCH = By::Lattice],
+            "neighbor-list" [SEARCH = PairSearchKind::NeighborList],
+            "sectors" [SEARCH = PairSearchKind::Sectors],
+            "lattice" [SEARCH = PairSearchKind::Lattice],
         },
         own: |prepared| setting_of(prepared, "search"),
     },
@@ -97,7 +97,7 @@ const PARAMETERS: &[Parameter] = &[
 ];
 
 /// Range from a thirtieth of a value to thirty times the value.
-fn around(values: &Values, key: &Key) -> Option<[f64; 2]> {
+fn around(values: &SceneValues, key: &Key) -> Option<[f64; 2]> {
     values.number(key).filter(|value| *value > 0.0).map(|value| [value / 30.0, value * 30.0])
 }
 

@@ -1,14 +1,14 @@
 //! Arrays of a step.
 
-use super::options::ProgramText;
+use super::options::ProgramVersion;
 use super::programs::scales;
-use super::{Discs, Model};
-use crate::particles::{Kind, Particle, Particles};
+use super::{DiscUniformity, GranularModel};
+use crate::particles::{Particle, ParticleKind, Particles};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
-use stripmine_kernels::ledger::Length;
+use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -28,7 +28,7 @@ pub struct Lengths {
 
 impl Lengths {
     /// Lengths for `grains`, and `discs` with wall discs, on a model's lattice.
-    pub fn new(model: &Model, grains: usize, discs: usize) -> Self {
+    pub fn new(model: &GranularModel, grains: usize, discs: usize) -> Self {
         let shape = &model.shape;
         Lengths {
             grains,
@@ -41,15 +41,15 @@ impl Lengths {
     }
 
     /// Element range of programs of this length.
-    pub fn range(&self, length: Length) -> Range<usize> {
+    pub fn range(&self, length: VectorLength) -> Range<usize> {
         match length {
-            Length::Grains => 0..self.grains,
-            Length::Discs => 0..self.discs,
-            Length::SweptCells => self.swept.clone(),
-            Length::PaddedCells => 0..self.padded,
-            Length::HaloCells => 0..self.halo,
+            VectorLength::Grains => 0..self.grains,
+            VectorLength::Discs => 0..self.discs,
+            VectorLength::SweptCells => self.swept.clone(),
+            VectorLength::PaddedCells => 0..self.padded,
+            VectorLength::HaloCells => 0..self.halo,
             // Known only when the lists are traversed.
-            Length::Candidates | Length::Pairs => 0..0,
+            VectorLength::Candidates | VectorLength::Pairs => 0..0,
         }
     }
 }
@@ -57,14 +57,14 @@ impl Lengths {
 /// Discs and lattice vectors of a model, with the state in precision `S` and the lattice in precision `P`. Parts that the model leaves out have no
 /// array.
 #[derive(Clone, Debug)]
-pub struct Arrays<S, P> {
+pub struct ProgramArrays<S, P> {
     lengths: Lengths,
     /// Columns in state precision.
-    state: Columns<S>,
+    state: ArrayColumns<S>,
     /// Columns in force precision that programs write.
-    lattice: Columns<P>,
+    lattice: ArrayColumns<P>,
     /// Columns in force precision that never change.
-    constant: Columns<P>,
+    constant: ArrayColumns<P>,
     cell: AlignedColumn<u32>,
     /// Index of each disc's forces if it differs from its cell: numbered from 1.
     force_at: Option<AlignedColumn<u32>>,
@@ -74,13 +74,13 @@ pub struct Arrays<S, P> {
 }
 
 /// Columns of the machine's arrays.
-type Columns<T> = Vec<(Array, AlignedColumn<T>)>;
+type ArrayColumns<T> = Vec<(Array, AlignedColumn<T>)>;
 
 /// Binds state and lattice columns to their slots.
 fn bound<'a, S: Precision, P: Precision>(
-    state: &'a mut Columns<S>,
-    lattice: &'a mut Columns<P>,
-    constant: &'a Columns<P>,
+    state: &'a mut ArrayColumns<S>,
+    lattice: &'a mut ArrayColumns<P>,
+    constant: &'a ArrayColumns<P>,
 ) -> Memory<'a> {
     let mut memory = Memory::new();
     // Constants first: if state and lattice have one precision, the state's copy of a quantity replaces them.
@@ -101,18 +101,18 @@ fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> Align
     AlignedColumn::new(array as usize, values)
 }
 
-impl<S: Precision, P: Precision> Arrays<S, P> {
+impl<S: Precision, P: Precision> ProgramArrays<S, P> {
     /// Stores `particles`; derivatives above the velocity start at zero. Forces are stored by cell.
-    pub fn new(model: &Model, particles: &Particles) -> Self {
-        Arrays::lay_out(model, particles, false)
+    pub fn new(model: &GranularModel, particles: &Particles) -> Self {
+        ProgramArrays::lay_out(model, particles, false)
     }
 
     /// Stores `particles` with forces by disc: for searches that let discs share a cell.
-    pub(crate) fn with_forces_by_disc(model: &Model, particles: &Particles) -> Self {
-        Arrays::lay_out(model, particles, true)
+    pub(crate) fn with_forces_by_disc(model: &GranularModel, particles: &Particles) -> Self {
+        ProgramArrays::lay_out(model, particles, true)
     }
 
-    fn lay_out(model: &Model, particles: &Particles, by_disc: bool) -> Self {
+    fn lay_out(model: &GranularModel, particles: &Particles, by_disc: bool) -> Self {
         let lengths = Lengths::new(model, particles.grain_count(), particles.len());
         let (discs, padded) = (lengths.discs, lengths.padded);
         let convert = |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(S::from_f64)));
@@ -142,11 +142,11 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
         }
 
         let mut constant = vec![(Array::FarX, laid_out(Array::FarX, model.shape.far(model.frame)))];
-        if model.discs == Discs::Varying {
+        if model.discs == DiscUniformity::Varying {
             let of_grains = |inverse: fn(&Particle, f64) -> f64| -> Vec<f64> {
                 let value = |disc: &Particle| match disc.kind {
-                    Kind::Grain => inverse(disc, model.inertia_factor),
-                    Kind::Wall => 0.0,
+                    ParticleKind::Grain => inverse(disc, model.inertia_factor),
+                    ParticleKind::Wall => 0.0,
                 };
                 particles.all().iter().map(value).collect()
             };
@@ -158,11 +158,12 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
                 state.push(convert(Array::DiscInverseInertia, inertia));
             }
             match model.text {
-                ProgramText::Ours => constant.push(on_lattice(Array::DiscInverseMass, inverse_mass)),
-                ProgramText::Printed => {
+                ProgramVersion::Ours => constant.push(on_lattice(Array::DiscInverseMass, inverse_mass)),
+                ProgramVersion::Printed => {
                     let heaviest = particles.grains().iter().map(|disc| disc.mass).fold(0.0, f64::max);
                     let fixed = printed::mass_of_fixed_disc(heaviest);
-                    let mass = |disc: &Particle| if disc.kind == Kind::Grain { disc.mass } else { fixed };
+                    let mass =
+                        |disc: &Particle| if disc.kind == ParticleKind::Grain { disc.mass } else { fixed };
                     let masses = particles.all().iter().map(mass).collect();
                     constant.push(on_lattice(Array::DiscMass, masses));
                 }
@@ -183,12 +184,12 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             }
         }
 
-        let mut lattice: Columns<P> = Vec::new();
+        let mut lattice: ArrayColumns<P> = Vec::new();
         let mut columns = |arrays: &[Array], length| {
             let zeros = |array| AlignedColumn::filled(array as usize, P::from_f64(0.0), length);
             lattice.extend(arrays.iter().map(|&array| (array, zeros(array))));
         };
-        let is_printed = model.text == ProgramText::Printed;
+        let is_printed = model.text == ProgramVersion::Printed;
         if is_printed {
             columns(&[Array::Test, Array::Mass], padded);
         } else {
@@ -204,7 +205,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             columns(&[Array::Omega], padded);
             columns(&[Array::Torque], forces);
         }
-        if model.discs == Discs::Varying {
+        if model.discs == DiscUniformity::Varying {
             columns(&[Array::Radius], padded);
             if !is_printed {
                 columns(&[Array::InverseMass], padded);
@@ -230,7 +231,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
             }
         }
 
-        Arrays {
+        ProgramArrays {
             state,
             lattice,
             constant,
@@ -253,7 +254,8 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
     /// Binds all arrays to their slots; also returns the vector lengths.
     pub fn memory(&mut self) -> (Memory<'_>, &Lengths) {
-        let Arrays { lengths, state, lattice, constant, cell, index, halo_cell, halo_source, .. } = self;
+        let ProgramArrays { lengths, state, lattice, constant, cell, index, halo_cell, halo_source, .. } =
+            self;
         let mut memory = bound(state, lattice, constant);
         memory.bind_write(Slot::new(Array::DiscCell), cell);
         memory.bind_write(Slot::new(Array::Index), index);
@@ -264,7 +266,7 @@ impl<S: Precision, P: Precision> Arrays<S, P> {
 
     /// Binds the arrays for the corrector: its cell of a disc is the index of the disc's forces.
     pub(crate) fn memory_of_corrector(&mut self) -> (Memory<'_>, &Lengths) {
-        let Arrays { lengths, state, lattice, constant, cell, force_at, .. } = self;
+        let ProgramArrays { lengths, state, lattice, constant, cell, force_at, .. } = self;
         let mut memory = bound(state, lattice, constant);
         memory.bind_read(Slot::new(Array::DiscCell), force_at.as_deref().unwrap_or(cell));
         (memory, lengths)

@@ -1,26 +1,29 @@
 //! Assembly of a checked scene into a model and its discs.
 
-use super::check::Checked;
+use super::check::CheckedGranularScene;
 use super::model::sides_of;
-use super::scene::{By, ProgramText};
-use super::{Contacts, Discs, FastSearch, Grains, ListOptions, Machine, Model, Watch};
-use crate::method::Failure;
+use super::scene::{ProgramVersion, SearchKind};
+use super::{
+    ContactSearch, ContactWatch, DiscUniformity, FastSearch, GranularModel, ListOptions, ProgramExecution,
+    SteppedGrains,
+};
+use crate::method::PhysicsFailure;
 use crate::method::refuse_several_ranks;
-use stripmine_kernels::law::granular::Disc;
+use stripmine_kernels::law::granular::EqualDiscs;
 
 /// Returns the model of a checked scene, without the parts that it does not need.
-pub fn model(checked: &Checked) -> Model {
-    let Checked { scene, domain, particles, alike, geometry, .. } = checked;
+pub fn model(checked: &CheckedGranularScene) -> GranularModel {
+    let CheckedGranularScene { scene, domain, particles, alike, geometry, .. } = checked;
     let factor = scene.law.inertia.factor();
-    let is_printed = scene.machine.text == ProgramText::Printed;
+    let is_printed = scene.machine.text == ProgramVersion::Printed;
     let discs = match particles.grains().first() {
-        Some(disc) if *alike && !is_printed => Discs::Equal {
-            disc: Disc { radius: disc.radius, inverse_mass: 1.0 / disc.mass },
+        Some(disc) if *alike && !is_printed => DiscUniformity::Equal {
+            disc: EqualDiscs { radius: disc.radius, inverse_mass: 1.0 / disc.mass },
             inverse_inertia: 1.0 / (factor * disc.mass * disc.radius * disc.radius),
         },
-        _ => Discs::Varying,
+        _ => DiscUniformity::Varying,
     };
-    Model {
+    GranularModel {
         text: scene.machine.text,
         shape: geometry.shape,
         frame: geometry.frame,
@@ -34,7 +37,7 @@ pub fn model(checked: &Checked) -> Model {
         scheme: scene.integrator.scheme,
         dt: scene.integrator.dt,
         gravity: scene.domain.gravity,
-        watch: Some(Watch {
+        watch: Some(ContactWatch {
             max_penetration: scene.law.max_penetration,
             stop_penetration: scene.law.stop_penetration,
             smallest_radius: geometry.radii[0],
@@ -46,17 +49,19 @@ pub fn model(checked: &Checked) -> Model {
 }
 
 /// Returns the contact search of a checked scene.
-pub(super) fn contacts(checked: &Checked) -> Contacts {
-    let Checked { scene, geometry, .. } = checked;
+pub(super) fn contacts(checked: &CheckedGranularScene) -> ContactSearch {
+    let CheckedGranularScene { scene, geometry, .. } = checked;
     let (search, skin) = (&scene.search, geometry.skin);
     match search.by {
-        By::Auto | By::Lattice if scene.machine.is_fast() => {
-            Contacts::Fast(FastSearch::Lattice(search.on_conflict))
+        SearchKind::Auto | SearchKind::Lattice if scene.machine.is_fast() => {
+            ContactSearch::Fast(FastSearch::Lattice(search.on_conflict))
         }
-        By::Auto | By::Lattice => Contacts::Lattice,
-        By::Sectors => Contacts::Fast(FastSearch::Sectors),
-        By::NeighborList if scene.machine.is_fast() => Contacts::Fast(FastSearch::Lists { skin }),
-        By::NeighborList => Contacts::Lists(ListOptions { rebuild: search.rebuild, skin }),
+        SearchKind::Auto | SearchKind::Lattice => ContactSearch::Lattice,
+        SearchKind::Sectors => ContactSearch::Fast(FastSearch::Sectors),
+        SearchKind::NeighborList if scene.machine.is_fast() => {
+            ContactSearch::Fast(FastSearch::Lists { skin })
+        }
+        SearchKind::NeighborList => ContactSearch::Lists(ListOptions { rebuild: search.rebuild, skin }),
     }
 }
 
@@ -64,7 +69,7 @@ pub(super) fn contacts(checked: &Checked) -> Contacts {
 ///
 /// # Errors
 /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
-pub fn assemble(checked: &Checked) -> Result<Grains, Failure> {
+pub fn assemble(checked: &CheckedGranularScene) -> Result<SteppedGrains, PhysicsFailure> {
     start_of(checked, model(checked))
 }
 
@@ -73,26 +78,26 @@ pub fn assemble(checked: &Checked) -> Result<Grains, Failure> {
 ///
 /// # Errors
 /// As [`assemble`].
-pub fn assemble_following_energy(checked: &Checked) -> Result<Grains, Failure> {
+pub fn assemble_following_energy(checked: &CheckedGranularScene) -> Result<SteppedGrains, PhysicsFailure> {
     start_of(checked, model_following_energy(checked))
 }
 
 /// Returns the model of a checked scene that tracks energy.
-pub(super) fn model_following_energy(checked: &Checked) -> Model {
+pub(super) fn model_following_energy(checked: &CheckedGranularScene) -> GranularModel {
     let mut model = model(checked);
     let motion = checked.scene.output.follows_motion();
-    model.watch = model.watch.map(|watch| Watch { energy: true, motion, ..watch });
+    model.watch = model.watch.map(|watch| ContactWatch { energy: true, motion, ..watch });
     model
 }
 
-fn start_of(checked: &Checked, model: Model) -> Result<Grains, Failure> {
-    let Checked { scene, particles, .. } = checked;
+fn start_of(checked: &CheckedGranularScene, model: GranularModel) -> Result<SteppedGrains, PhysicsFailure> {
+    let CheckedGranularScene { scene, particles, .. } = checked;
     if !scene.machine.is_fast() {
         refuse_several_ranks(
             "BP93's programs act on whole arrays; only machine.engine = \"fast\" has bands",
         )?;
     }
     let contacts = contacts(checked);
-    let machine = Machine { execution: scene.machine.execution, set: scene.machine.instructions() };
-    Grains::start(scene.machine.precision, model, contacts, machine, scene.walls, particles.clone())
+    let machine = ProgramExecution { execution: scene.machine.execution, set: scene.machine.instructions() };
+    SteppedGrains::start(scene.machine.precision, model, contacts, machine, scene.walls, particles.clone())
 }

@@ -1,36 +1,36 @@
 //! Energy balance along a run.
 
-use super::Totals;
+use super::GranularTotals;
 use crate::domain::Domain;
-use crate::observe::{Observation, Scenery, Sums};
+use crate::observe::{Observation, ObservationSums, SceneProperties};
 use crate::particles::{Particle, Particles};
 
 /// Terms that the energy of the grains is compared with: the start energy, the work of gravity and walls, and the dissipation in contacts.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Work {
-    way: Way,
+pub(super) struct BalanceTerms {
+    way: GravityPath,
     /// Kinetic, rotational and elastic energy at the start.
     start: f64,
 }
 
 /// Work of gravity on grains along their displacement since the start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Way {
+pub struct GravityPath {
     domain: Domain,
     gravity: [f64; 2],
     /// Unwrapped positions of grains at the start (length); empty without gravity.
     from: Vec<[f64; 2]>,
 }
 
-impl Way {
+impl GravityPath {
     /// Starts from the grains' positions and crossed periods; the positions are computed only with gravity.
     pub(super) fn begin(
-        scenery: &Scenery,
+        scenery: &SceneProperties,
         crossings: &[[f64; 2]],
         standing: impl FnOnce() -> Particles,
-    ) -> Way {
-        let Scenery { domain, gravity, .. } = *scenery;
-        let mut way = Way { domain, gravity, from: vec![] };
+    ) -> GravityPath {
+        let SceneProperties { domain, gravity, .. } = *scenery;
+        let mut way = GravityPath { domain, gravity, from: vec![] };
         if gravity != [0.0; 2] {
             let standing = standing();
             let places = standing.grains().iter().map(Particle::place).enumerate();
@@ -63,7 +63,7 @@ impl Way {
 
 /// Energies since the start (mass · length²/time²).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Balance {
+pub struct EnergyBalance {
     /// Energy dissipated in contacts: summed contact by contact, step by step.
     pub dissipated: f64,
     /// Work of gravity.
@@ -74,28 +74,33 @@ pub struct Balance {
     pub(crate) balance_error: f64,
 }
 
-impl Work {
+impl BalanceTerms {
     /// Starts at the first observation.
-    pub(super) fn begin(way: Way, first: &Observation) -> Work {
-        Work { way, start: inner(first) }
+    pub(super) fn begin(way: GravityPath, first: &Observation) -> BalanceTerms {
+        BalanceTerms { way, start: inner(first) }
     }
 
     /// Returns the displacements of the grains.
-    pub(super) fn way(&self) -> &Way {
+    pub(super) fn way(&self) -> &GravityPath {
         &self.way
     }
 
     /// Scale of the balance: energy at the start plus the magnitudes of gravity work and wall work since.
-    pub(super) fn passed(&self, balance: &Balance) -> f64 {
+    pub(super) fn passed(&self, balance: &EnergyBalance) -> f64 {
         self.start + balance.gravity_work.abs() + balance.wall_work.abs()
     }
 
     /// Returns the balance of a moment.
-    pub(super) fn balance(&self, now: &Observation, sums: &Sums, totals: &Totals) -> Balance {
-        let Totals { dissipated, wall_work, .. } = *totals;
+    pub(super) fn balance(
+        &self,
+        now: &Observation,
+        sums: &ObservationSums,
+        totals: &GranularTotals,
+    ) -> EnergyBalance {
+        let GranularTotals { dissipated, wall_work, .. } = *totals;
         let gravity_work = sums.grains.gravity_work;
         let balance_error = inner(now) - self.start - gravity_work - wall_work + dissipated;
-        Balance { dissipated, gravity_work, wall_work, balance_error }
+        EnergyBalance { dissipated, gravity_work, wall_work, balance_error }
     }
 }
 

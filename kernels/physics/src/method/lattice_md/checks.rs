@@ -1,7 +1,7 @@
 //! Warnings of a run about its counts and its energy.
 
-use super::Totals;
-use super::balance::Balance;
+use super::GranularTotals;
+use super::balance::EnergyBalance;
 use crate::method::RunWarning;
 use crate::number::significant;
 
@@ -11,7 +11,7 @@ const BALANCED: f64 = 0.05 / 0.75;
 
 /// Returns warnings about counts. Contacts deeper than `law.max_penetration` are only counted: every search finds them, and the run stops at
 /// `law.stop_penetration`.
-pub(super) fn counted(totals: &Totals) -> Vec<RunWarning> {
+pub(super) fn counted(totals: &GranularTotals) -> Vec<RunWarning> {
     let mut warnings = Vec::new();
     let mut warn = |check, value: f64, limit, message| {
         warnings.push(RunWarning { check, value, limit, message });
@@ -36,7 +36,7 @@ pub(super) fn counted(totals: &Totals) -> Vec<RunWarning> {
 }
 
 /// Warns of energy created or lost by the integration; `passed` is the start energy plus the input from outside.
-pub(super) fn energy(balance: &Balance, passed: f64) -> Option<RunWarning> {
+pub(super) fn energy(balance: &EnergyBalance, passed: f64) -> Option<RunWarning> {
     let off = balance.balance_error / passed;
     // NaN counts as unbalanced.
     let is_balanced = balance.balance_error == 0.0 || off.abs() <= BALANCED;
@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn energy_drift_is_warned_with_its_number() {
         let off = |balance_error: f64| {
-            let balance = Balance { balance_error, ..Balance::default() };
+            let balance = EnergyBalance { balance_error, ..EnergyBalance::default() };
             energy(&balance, 2.0).map(|warning| (warning.value, warning.message))
         };
         assert_eq!(off(0.099), None);
@@ -65,13 +65,13 @@ mod tests {
         assert!(value == 0.125 && message.contains("has created 12.50 %"), "{message}");
         assert!(off(-0.25).unwrap().1.contains("has lost 12.50 %"));
         assert!(off(f64::NAN).is_some());
-        assert_eq!(energy(&Balance::default(), 0.0), None);
+        assert_eq!(energy(&EnergyBalance::default(), 0.0), None);
     }
 
     #[test]
     fn zero_counts_give_no_warning() {
-        assert_eq!(counted(&Totals::default()), []);
-        let mut totals = Totals::default();
+        assert_eq!(counted(&GranularTotals::default()), []);
+        let mut totals = GranularTotals::default();
         totals.long_steps = 3;
         let [warning] = counted(&totals).try_into().unwrap();
         assert!(warning.check == "long-steps" && warning.value == 3.0, "{warning:?}");

@@ -3,7 +3,7 @@
 //! The choice depends on the scene alone, never on the machine or its threads, so that a run is reproducible everywhere.
 
 use super::OnConflict;
-use super::scene::{By, EngineChoice, ProgramText, Scene};
+use super::scene::{EngineChoice, GranularScene, ProgramVersion, SearchKind};
 use crate::domain::Domain;
 use crate::particles::Particles;
 use crate::scene::Precision;
@@ -45,18 +45,18 @@ fn crossing(precision: Precision, discs: usize) -> f64 {
 
 /// Contact search with the reason for it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Choice {
-    pub(super) by: By,
+pub(super) struct SearchChoice {
+    pub(super) by: SearchKind,
     pub(super) reason: String,
 }
 
 /// Chooses the engine if the scene leaves it open; returns the reason.
-pub(super) fn engine(scene: &mut Scene) -> Option<String> {
+pub(super) fn engine(scene: &mut GranularScene) -> Option<String> {
     if scene.machine.engine != EngineChoice::Auto {
         return None;
     }
     let machine = &scene.machine;
-    let of_programs = machine.text == ProgramText::Printed
+    let of_programs = machine.text == ProgramVersion::Printed
         || machine.execution != Execution::Chained
         || machine.coordinates != Coordinates::CellRelative
         || scene.search.rebuild == super::Rebuild::AllPairs;
@@ -71,32 +71,33 @@ pub(super) fn engine(scene: &mut Scene) -> Option<String> {
 }
 
 /// Returns the contact searches to try for a scene, the fastest first.
-pub(super) fn searches(scene: &Scene, domain: &Domain, particles: &Particles) -> Vec<Choice> {
-    let choice = |by: By, reason: String| Choice { by, reason };
+pub(super) fn searches(scene: &GranularScene, domain: &Domain, particles: &Particles) -> Vec<SearchChoice> {
+    let choice = |by: SearchKind, reason: String| SearchChoice { by, reason };
     if !scene.machine.is_fast() {
-        return vec![choice(By::Lattice, "BP93's programs need it".to_owned())];
+        return vec![choice(SearchKind::Lattice, "BP93's programs need it".to_owned())];
     }
     let search = &scene.search;
     if search.cell_edge.is_some() || search.mask.is_some() || search.on_conflict == OnConflict::Resolve {
-        return vec![choice(By::Lattice, "a key that only the lattice has is given".to_owned())];
+        return vec![choice(SearchKind::Lattice, "a key that only the lattice has is given".to_owned())];
     }
     let area: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius * disc.radius).sum();
     let (packing_fraction, discs) = (area / (domain.area()), particles.len());
     let crossing = crossing(scene.machine.precision, discs);
-    let on_lattice = choice(By::Lattice, {
+    let on_lattice = choice(SearchKind::Lattice, {
         format!(
             "the packing fraction {packing_fraction:.3} is above {crossing:.3}, where lists are equally fast"
         )
     });
-    let by_lists = choice(By::NeighborList, {
+    let by_lists = choice(SearchKind::NeighborList, {
         format!(
             "the packing fraction {packing_fraction:.3} is at most {crossing:.3}, where the lattice is equally fast"
         )
     });
     let in_sectors =
-        choice(By::Sectors, "neither the lattice nor lists suit these discs in this box".to_owned());
-    let lists_instead = choice(By::NeighborList, "no lattice suits these discs in this box".to_owned());
-    let lattice_instead = choice(By::Lattice, "the box is too small for lists".to_owned());
+        choice(SearchKind::Sectors, "neither the lattice nor lists suit these discs in this box".to_owned());
+    let lists_instead =
+        choice(SearchKind::NeighborList, "no lattice suits these discs in this box".to_owned());
+    let lattice_instead = choice(SearchKind::Lattice, "the box is too small for lists".to_owned());
     if packing_fraction > crossing {
         vec![on_lattice, lists_instead, in_sectors]
     } else {

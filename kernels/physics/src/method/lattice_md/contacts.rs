@@ -6,7 +6,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 
 /// Search for contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Contacts {
+pub enum ContactSearch {
     /// On the lattice: the method of BP93.
     Lattice,
     /// Visits each pair once and evaluates the law for contacts only; the machine's execution does not matter.
@@ -17,7 +17,7 @@ pub enum Contacts {
 
 /// Execution of the programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Machine {
+pub struct ProgramExecution {
     /// Eager, strip-mined or chained.
     pub execution: Execution,
     /// Instruction set.

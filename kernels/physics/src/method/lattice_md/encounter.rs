@@ -1,6 +1,6 @@
 //! Collision of two discs of a scene, alone in a box, as a scene of its own.
 
-use crate::method::{Encounter, Prepared};
+use crate::method::{EncounterGeometry, Prepared};
 use toml::{Table, Value};
 
 /// Tables of a scene that an encounter copies; gravity and moving walls are not among them.
@@ -13,7 +13,10 @@ const SIDE: f64 = 40.0;
 const FLIGHT: f64 = 3.0;
 
 /// Returns the scene of an encounter of two discs of mean radius and mass; none where nothing moves.
-pub(super) fn encounter(prepared: &Prepared, Encounter { speed, offset }: Encounter) -> Option<String> {
+pub(super) fn encounter(
+    prepared: &Prepared,
+    EncounterGeometry { speed, offset }: EncounterGeometry,
+) -> Option<String> {
     let grains = prepared.particles().grains();
     let count = grains.len() as f64;
     if !(speed > 0.0 && speed.is_finite()) || grains.is_empty() {
@@ -54,21 +57,21 @@ pub(super) fn encounter(prepared: &Prepared, Encounter { speed, offset }: Encoun
 mod tests {
     use super::*;
     use crate::method::lattice_md::keys::STIFFNESS;
-    use crate::method::{METHODS, Purpose, prepare, vocabularies};
-    use crate::scene::Values;
+    use crate::method::{METHODS, StartPurpose, prepare, vocabularies};
+    use crate::scene::SceneValues;
     use std::sync::atomic::AtomicBool;
     use stripmine_kernels::law::spring::Spring;
 
     /// Relative velocities before and after an encounter in a scene with a damping, integrated with a step.
-    fn speeds(damping: f64, encounter: Encounter, step: f64) -> [[f64; 2]; 2] {
+    fn speeds(damping: f64, encounter: EncounterGeometry, step: f64) -> [[f64; 2]; 2] {
         let known = vocabularies(METHODS);
         let overrides = ["particles.count=100".to_owned(), format!("law.normal_damping={damping}")];
-        let (gas, _) = prepare(Values::load("dense-gas", &overrides, &known).unwrap(), METHODS).unwrap();
+        let (gas, _) = prepare(SceneValues::load("dense-gas", &overrides, &known).unwrap(), METHODS).unwrap();
         let text = super::encounter(&gas, encounter).unwrap();
         let step = format!("integrator.dt={step}");
-        let values = Values::parse("encounter", &text, &[step], &known).unwrap();
+        let values = SceneValues::parse("encounter", &text, &[step], &known).unwrap();
         let (scene, _) = prepare(values, METHODS).unwrap();
-        let mut simulation = scene.start(Purpose::Run).unwrap();
+        let mut simulation = scene.start(StartPurpose::Run).unwrap();
         simulation.advance(&[scene.schedule.until], &AtomicBool::new(false)).unwrap();
         [scene.particles().clone(), simulation.particles()].map(|particles| {
             let [a, b] = [0, 1].map(|at| particles.grains()[at].planar_velocity());
@@ -81,11 +84,11 @@ mod tests {
     #[test]
     fn encounter_restitution_matches_the_law() {
         let known = vocabularies(METHODS);
-        let gas = Values::load("dense-gas", &["particles.count=100".to_owned()], &known).unwrap();
+        let gas = SceneValues::load("dense-gas", &["particles.count=100".to_owned()], &known).unwrap();
         let stiffness = gas.number(&STIFFNESS).unwrap();
         let (prepared, _) = prepare(gas, METHODS).unwrap();
         let mass = prepared.particles().grains()[0].mass;
-        let head_on = Encounter { speed: 0.3, offset: 0.0 };
+        let head_on = EncounterGeometry { speed: 0.3, offset: 0.0 };
         for damping in [0.0, 1.0, 4.0] {
             let [before, after] = speeds(damping, head_on, 1e-4);
             let expected = match damping {
@@ -95,9 +98,9 @@ mod tests {
             assert!((before[0] - 0.3).abs() < 1e-12 && before[1] == 0.0, "{before:?}");
             assert!((-after[0] / 0.3 - expected).abs() < 1e-3, "{damping}: {after:?}, {expected}");
         }
-        let [before, after] = speeds(1.0, Encounter { offset: 1.01, ..head_on }, 1e-3);
+        let [before, after] = speeds(1.0, EncounterGeometry { offset: 1.01, ..head_on }, 1e-3);
         assert_eq!(before, after);
-        let [_, after] = speeds(0.0, Encounter { offset: 0.5, ..head_on }, 1e-4);
+        let [_, after] = speeds(0.0, EncounterGeometry { offset: 0.5, ..head_on }, 1e-4);
         assert!((after[0].hypot(after[1]) / 0.3 - 1.0).abs() < 1e-6 && after[1].abs() > 0.1, "{after:?}");
     }
 }

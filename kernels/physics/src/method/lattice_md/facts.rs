@@ -1,6 +1,6 @@
 //! Reported properties of a scene.
 
-use super::check::Checked;
+use super::check::CheckedGranularScene;
 use super::theory::limits;
 use super::theory::trial_contact::contact_error;
 use crate::method::Fact;
@@ -9,8 +9,8 @@ use crate::words::Words;
 use serde_json::json;
 
 /// Returns all facts of a scene.
-pub(super) fn facts(checked: &Checked) -> Vec<Fact> {
-    let Checked { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
+pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
+    let CheckedGranularScene { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
     let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
     let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
     let mut facts = vec![
@@ -56,7 +56,7 @@ fn range(ends: [f64; 2]) -> String {
 }
 
 /// Returns the facts about the lattice of a scene that needs one.
-fn lattice_facts(checked: &Checked) -> Vec<Fact> {
+fn lattice_facts(checked: &CheckedGranularScene) -> Vec<Fact> {
     let geometry = &checked.geometry;
     let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
     let mask = 2 * geometry.mask.half_width() + 1;
@@ -74,8 +74,8 @@ fn lattice_facts(checked: &Checked) -> Vec<Fact> {
 }
 
 /// Energy error of a contact at the typical speed; none where nothing moves.
-pub(super) fn expected_error(checked: &Checked) -> Option<Fact> {
-    let Checked { scene, estimates, .. } = checked;
+pub(super) fn expected_error(checked: &CheckedGranularScene) -> Option<Fact> {
+    let CheckedGranularScene { scene, estimates, .. } = checked;
     let (contact, integrator) = (limits::contact(checked, 1.0), &scene.integrator);
     let error = contact_error(contact, integrator.scheme, integrator.dt)?;
     let most = if error.step > integrator.dt { "at most " } else { "" };

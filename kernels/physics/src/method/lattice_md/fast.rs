@@ -2,13 +2,15 @@
 //! for contacts only, and corrector and next predictor share one pass. Alternatives to the lattice are sectors and Verlet lists, with the same state,
 //! law and integrator.
 
-use super::Model;
+use super::GranularModel;
 use super::programs::{with_law, with_scheme};
 use super::walls::walls_at;
 use crate::grid::sectors_of;
-use crate::method::Failure;
-use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, Search, SectorSearch};
-use crate::method::pairwise::{self, Dynamics, Prescribed, Sort, Stepping, System, WithLaw, WithScheme};
+use crate::method::PhysicsFailure;
+use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, PairSearch, SectorSearch};
+use crate::method::pairwise::{
+    self, Dynamics, LawTask, PairSystem, PrescribedMotion, SchemeTask, SortSchedule, SteppingDiscs,
+};
 use crate::particles::Particles;
 use crate::scene::WallMotion;
 use stripmine_kernels::InstructionSet;
@@ -35,12 +37,12 @@ pub enum FastSearch {
 /// # Errors
 /// [`Failure`] if the start violates a precondition, or the box does not suit sectors.
 pub(super) fn stepping<S: Precision, P: Precision>(
-    model: &Model,
+    model: &GranularModel,
     search: FastSearch,
     set: InstructionSet,
     walls: WallMotion,
     particles: Particles,
-) -> Result<Box<dyn Stepping>, Failure> {
+) -> Result<Box<dyn SteppingDiscs>, PhysicsFailure> {
     let radii = particles.all().iter().map(|disc| disc.radius);
     let (discs, reach) = (particles.len(), reach(&particles));
     let single = S::NAME != f64::NAME || P::NAME != f64::NAME;
@@ -68,34 +70,34 @@ pub(super) fn reach(particles: &Particles) -> f64 {
 
 /// Contact law and integrator of a model, and motion of its walls.
 #[derive(Clone)]
-struct Granular {
-    model: Model,
+struct GranularDynamics {
+    model: GranularModel,
     walls: WallMotion,
 }
 
-impl Dynamics for Granular {
-    fn with_law<W: WithLaw>(&self, work: W) -> W::Output {
+impl Dynamics for GranularDynamics {
+    fn with_law<W: LawTask>(&self, work: W) -> W::Output {
         with_law(&self.model, work)
     }
 
-    fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output {
+    fn with_scheme<W: SchemeTask>(&self, work: W) -> W::Output {
         with_scheme(&self.model, work)
     }
 
-    fn prescribed(&self, time: f64) -> Option<Prescribed> {
+    fn prescribed(&self, time: f64) -> Option<PrescribedMotion> {
         (self.walls != WallMotion::Fixed).then(|| walls_at(self.walls, time))
     }
 }
 
 /// Places the discs with a given search.
-fn by<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
-    model: &Model,
+fn by<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static>(
+    model: &GranularModel,
     search: Q,
     set: InstructionSet,
     walls: WallMotion,
     particles: Particles,
-) -> Result<Box<dyn Stepping>, Failure> {
-    let system = System {
+) -> Result<Box<dyn SteppingDiscs>, PhysicsFailure> {
+    let system = PairSystem {
         domain: model.domain(),
         dt: model.dt,
         gravity: model.gravity,
@@ -104,13 +106,13 @@ fn by<S: Precision, P: Precision, Q: Search<S, P> + 'static>(
         inertia_factor: model.inertia_factor,
         radius: model.radius(),
         reach: reach(&particles),
-        sort: Sort::WhenNeeded,
+        sort: SortSchedule::WhenNeeded,
         longest_step: model.watch.map_or(f64::INFINITY, |watch| watch.longest_step()),
         crosses_any: false,
         followed: model.counts_crossings(),
         // None of these schemes draws random numbers.
         noise: NoiseSource::new(0),
     };
-    let granular = Granular { model: model.clone(), walls };
+    let granular = GranularDynamics { model: model.clone(), walls };
     Ok(pairwise::begin::<S, P, Q, _>((granular, system, set), search, particles)?)
 }

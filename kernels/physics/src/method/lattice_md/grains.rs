@@ -1,69 +1,69 @@
 //! Granular discs that are stepped: checks and accounting of a step, independent of the engine.
 
-use super::balance::Way;
-use super::contacts::{Contacts, Machine};
+use super::balance::GravityPath;
+use super::contacts::{ContactSearch, ProgramExecution};
 use super::fast;
 use super::judge::{judge_depth, judge_steps};
 use super::simulation::LatticeMd;
 use super::walls::wall_power;
-use super::{Lengths, Model, Timings, Totals};
-use crate::io::checkpoint::Column;
-use crate::method::pairwise::Stepping;
+use super::{GranularModel, GranularTotals, Lengths, Timings};
+use crate::io::checkpoint::CheckpointColumn;
+use crate::method::pairwise::SteppingDiscs;
 use crate::method::stepped::SteppedState;
-use crate::method::{Elapsed, Failure, PerParticle};
-use crate::observe::{Scenery, Sums};
+use crate::method::{Elapsed, PerParticle, PhysicsFailure};
+use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
-use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::ledger::{Ledger, VectorLength};
 
 /// Granular discs that are stepped. They never print and never write a file.
-pub struct Grains {
-    stepping: Box<dyn Stepping>,
-    model: Model,
+pub struct SteppedGrains {
+    stepping: Box<dyn SteppingDiscs>,
+    model: GranularModel,
     walls: WallMotion,
-    totals: Totals,
+    totals: GranularTotals,
     /// Pairs visited in the last step.
     met: u64,
 }
 
-impl Grains {
+impl SteppedGrains {
     /// Places `particles` and computes their first forces, in the requested precision.
     ///
     /// # Errors
     /// [`Failure`] if the start violates a precondition, or the box does not suit sectors.
     pub fn start(
         precision: Precision,
-        model: Model,
-        contacts: Contacts,
-        machine: Machine,
+        model: GranularModel,
+        contacts: ContactSearch,
+        machine: ProgramExecution,
         walls: WallMotion,
         particles: Particles,
-    ) -> Result<Grains, Failure> {
+    ) -> Result<SteppedGrains, PhysicsFailure> {
         fn programs<S: stripmine_kernels::backend::Precision, P: stripmine_kernels::backend::Precision>(
-            (model, contacts, machine): (&Model, Contacts, Machine),
+            (model, contacts, machine): (&GranularModel, ContactSearch, ProgramExecution),
             walls: WallMotion,
             particles: Particles,
-        ) -> Box<dyn Stepping> {
+        ) -> Box<dyn SteppingDiscs> {
             Box::new(LatticeMd::<S, P>::new(model.clone(), contacts, machine, walls, particles))
         }
         let stepping = match (contacts, precision) {
-            (Contacts::Fast(search), Precision::F64) => {
+            (ContactSearch::Fast(search), Precision::F64) => {
                 fast::stepping::<f64, f64>(&model, search, machine.set, walls, particles)?
             }
-            (Contacts::Fast(search), Precision::F32) => {
+            (ContactSearch::Fast(search), Precision::F32) => {
                 fast::stepping::<f32, f32>(&model, search, machine.set, walls, particles)?
             }
-            (Contacts::Fast(search), Precision::Mixed) => {
+            (ContactSearch::Fast(search), Precision::Mixed) => {
                 fast::stepping::<f64, f32>(&model, search, machine.set, walls, particles)?
             }
             (_, Precision::F64) => programs::<f64, f64>((&model, contacts, machine), walls, particles),
             (_, Precision::F32) => programs::<f32, f32>((&model, contacts, machine), walls, particles),
             (_, Precision::Mixed) => programs::<f64, f32>((&model, contacts, machine), walls, particles),
         };
-        let mut grains = Grains { stepping, model, walls, totals: Totals::default(), met: 0 };
+        let mut grains = SteppedGrains { stepping, model, walls, totals: GranularTotals::default(), met: 0 };
         let power = grains.compute_forces()?;
         grains.stepping.finish()?;
-        grains.totals = Totals::starting_with(power, grains.wall_power());
+        grains.totals = GranularTotals::starting_with(power, grains.wall_power());
         Ok(grains)
     }
 
@@ -71,7 +71,7 @@ impl Grains {
     ///
     /// # Errors
     /// [`Failure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
-    pub fn step(&mut self) -> Result<(), Failure> {
+    pub fn step(&mut self) -> Result<(), PhysicsFailure> {
         let far = self.stepping.advance()?;
         judge_steps(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
         self.totals.shared_cells += self.stepping.shared_cells() as u64;
@@ -81,7 +81,7 @@ impl Grains {
     }
 
     /// Computes all forces at the current positions; returns the power that contacts dissipate (energy/time).
-    fn compute_forces(&mut self) -> Result<f64, Failure> {
+    fn compute_forces(&mut self) -> Result<f64, PhysicsFailure> {
         let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
         judge_depth(self.stepping.as_ref(), &met.deep, self.model.watch, &mut self.totals)?;
@@ -122,7 +122,7 @@ impl Grains {
     }
 
     /// Sums over the discs and their contacts now, with the work of gravity since the start. The order of summation depends on the scene alone.
-    pub fn sums(&self, scenery: &Scenery, way: &Way) -> Sums {
+    pub fn sums(&self, scenery: &SceneProperties, way: &GravityPath) -> ObservationSums {
         let crossings = self.crossings();
         self.stepping.sums(scenery, &|number, grain, position| way.work(number, grain, position, crossings))
     }
@@ -133,7 +133,7 @@ impl Grains {
     }
 
     /// Counts and sums since the start.
-    pub fn totals(&self) -> Totals {
+    pub fn totals(&self) -> GranularTotals {
         self.totals
     }
 
@@ -144,8 +144,8 @@ impl Grains {
     pub fn restore(
         &mut self,
         steps: u64,
-        totals: Totals,
-        columns: &[(String, Column)],
+        totals: GranularTotals,
+        columns: &[(String, CheckpointColumn)],
     ) -> Result<(), String> {
         self.stepping.restore(steps, columns)?;
         self.totals = totals;
@@ -158,10 +158,10 @@ impl Grains {
     }
 
     /// Length of vectors of a symbolic length in the last step.
-    pub fn length(&self, length: Length) -> u64 {
+    pub fn length(&self, length: VectorLength) -> u64 {
         match (self.stepping.length(length), length) {
             (Some(own), _) => own,
-            (None, Length::Pairs) => self.met,
+            (None, VectorLength::Pairs) => self.met,
             (None, _) => {
                 let start = self.stepping.start();
                 Lengths::new(&self.model, start.grain_count(), start.len()).range(length).len() as u64
@@ -185,7 +185,7 @@ impl Grains {
     }
 }
 
-impl SteppedState for Grains {
+impl SteppedState for SteppedGrains {
     fn elapsed(&self) -> &Elapsed {
         self.stepping.elapsed()
     }
@@ -194,11 +194,11 @@ impl SteppedState for Grains {
         self.stepping.as_ref()
     }
 
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         self.stepping.check_ranks()
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         self.stepping.columns()
     }
 }

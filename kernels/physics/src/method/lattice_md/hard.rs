@@ -2,9 +2,9 @@
 
 use super::keys::{COHESIONLESS, FRICTION, LAW, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
 use crate::method::hard_disks::keys::RESTITUTION;
-use crate::method::{Prepared, Rewritten, Until};
+use crate::method::{Prepared, TranslatedScene, Until};
 use crate::observe::{AxisMotion, conserved_axes, temperature};
-use crate::scene::{DT, Key, Value, Values};
+use crate::scene::{DT, Key, KeyValue, SceneValues};
 use crate::words::Words;
 use std::f64::consts::PI;
 use stripmine_kernels::law::spring::Spring;
@@ -19,13 +19,13 @@ const ROWS: f64 = 100.0;
 /// counterpart.
 ///
 /// The restitution is that of an impact at the mean collision speed at the temperature of the start.
-pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Option<Rewritten> {
+pub(super) fn hard(values: &SceneValues, prepared: &Prepared, quantity: &str) -> Option<TranslatedScene> {
     let particles = prepared.particles();
     let (discs, grains) = (particles.grain_count(), particles.grains());
     let is_zero = |key: &Key| values.number(key) == Some(0.0);
     let is_free = discs == particles.len() && prepared.domain.periodic() == [true; 2];
     let is_smooth = is_zero(&FRICTION) && is_zero(&SHEAR_DAMPING);
-    if !is_free || !is_smooth || values.value(&COHESIONLESS) != Some(Value::Switch(true)) {
+    if !is_free || !is_smooth || values.value(&COHESIONLESS) != Some(KeyValue::Switch(true)) {
         return None;
     }
     let all_mass = grains.iter().map(|it| it.mass).sum::<f64>();
@@ -76,7 +76,7 @@ pub(super) fn hard(values: &Values, prepared: &Prepared, quantity: &str) -> Opti
             ("snapshot_every", Toml::from(0.0)),
         ]),
     );
-    Some(Rewritten { text: scene.to_string(), quantity, unit })
+    Some(TranslatedScene { text: scene.to_string(), quantity, unit })
 }
 
 #[cfg(test)]
@@ -85,13 +85,13 @@ mod tests {
     use crate::method::{METHODS, prepare, vocabularies};
     use crate::particles::Particles;
 
-    fn both(overrides: &[&str], quantity: &str) -> (Particles, Option<(Prepared, Rewritten)>) {
+    fn both(overrides: &[&str], quantity: &str) -> (Particles, Option<(Prepared, TranslatedScene)>) {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let known = vocabularies(METHODS);
-        let values = Values::load("dense-gas", &overrides, &known).unwrap();
+        let values = SceneValues::load("dense-gas", &overrides, &known).unwrap();
         let (soft, _) = prepare(values.clone(), METHODS).unwrap();
         let twin = hard(&values, &soft, quantity).map(|twin| {
-            let values = Values::parse("hard", &twin.text, &[], &known).unwrap();
+            let values = SceneValues::parse("hard", &twin.text, &[], &known).unwrap();
             (prepare(values, METHODS).unwrap().0, twin)
         });
         (soft.particles().clone(), twin)
@@ -104,7 +104,7 @@ mod tests {
         let twin = |drift: [f64; 2], law: &[&str], quantity: &str| {
             let overrides: Vec<String> =
                 ["particles.count=100"].iter().chain(law).map(|&text| text.to_owned()).collect();
-            let values = Values::load("dense-gas", &overrides, &vocabularies(METHODS)).unwrap();
+            let values = SceneValues::load("dense-gas", &overrides, &vocabularies(METHODS)).unwrap();
             let (soft, _) = prepare(values.clone(), METHODS).unwrap();
             let mut moved = soft.particles().clone();
             moved.all_mut().iter_mut().for_each(|disc| {

@@ -1,17 +1,17 @@
 //! Checks of a step of granular discs: contacts that are too deep, discs that are too fast.
 
-use super::{OnLongStep, Totals, Watch};
-use crate::method::pairwise::Named;
-use crate::method::{Clock, Culprit, Failure, FailureKind};
+use super::{ContactWatch, GranularTotals, OnLongStep};
+use crate::method::pairwise::NameableDiscs;
+use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
 use crate::number::significant;
 
 /// Counts discs so fast that a step may miss their contacts, and stops if none are allowed.
 pub(super) fn judge_steps(
-    discs: &(impl Named + ?Sized),
+    discs: &(impl NameableDiscs + ?Sized),
     far: &[u32],
-    watch: Option<Watch>,
-    totals: &mut Totals,
-) -> Result<(), Failure> {
+    watch: Option<ContactWatch>,
+    totals: &mut GranularTotals,
+) -> Result<(), PhysicsFailure> {
     let Some(watch) = watch else { return Ok(()) };
     let speed = |disc: usize| {
         let [x, y] = discs.velocity(disc);
@@ -35,11 +35,11 @@ pub(super) fn judge_steps(
 
 /// Counts grains in contacts that are too deep, and stops above the limit. A pair may be listed once or from both sides.
 pub(super) fn judge_depth(
-    discs: &(impl Named + ?Sized),
+    discs: &(impl NameableDiscs + ?Sized),
     pairs: &[[u32; 2]],
-    watch: Option<Watch>,
-    totals: &mut Totals,
-) -> Result<(), Failure> {
+    watch: Option<ContactWatch>,
+    totals: &mut GranularTotals,
+) -> Result<(), PhysicsFailure> {
     let Some(watch) = watch else { return Ok(()) };
     let is_grain = |disc: &usize| discs.grains().contains(disc);
     let (mut grains, mut deepest): (Vec<usize>, Option<(f64, [usize; 2])>) = (vec![], None);
@@ -65,7 +65,7 @@ pub(super) fn judge_depth(
 }
 
 /// Failure of discs that moved farther than `limit` (length) in a step; a step of `dt` (time) is short enough for the first.
-fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Failure {
+fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> PhysicsFailure {
     let what = format!(
         "{count} discs moved farther than {} in the step, first {first}; contacts deeper than law.max_penetration \
          could be missed between two steps",
@@ -75,17 +75,17 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Fail
         "lower dt to {dt}, slow the discs, or set integrator.on_long_step = \"count\"",
         dt = significant(dt, 5)
     );
-    let failure = Failure::new(FailureKind::LONG_STEP, what, remedy).at(at).of(count, [first]);
+    let failure = PhysicsFailure::new(FailureKind::LONG_STEP, what, remedy).at(at).of(count, [first]);
     failure.with([("limit", limit), ("dt", dt)])
 }
 
 /// Failure of a contact of penetration ξ/(R_i + R_j) beyond the limit.
-fn too_deep(at: Clock, [first, second]: [Culprit; 2], penetration: f64, limit: f64) -> Failure {
+fn too_deep(at: Clock, [first, second]: [Culprit; 2], penetration: f64, limit: f64) -> PhysicsFailure {
     let what = format!(
         "{first} and {second} overlap by {} of the sum of their radii, more than law.stop_penetration = {limit}",
         significant(penetration, 4)
     );
     let remedy = "the contacts are too soft for these weights and speeds: raise law.stiffness (and lower dt), or slow the discs";
-    let failure = Failure::new(FailureKind::TOO_DEEP, what, remedy).at(at).of(2, [first, second]);
+    let failure = PhysicsFailure::new(FailureKind::TOO_DEEP, what, remedy).at(at).of(2, [first, second]);
     failure.with([("penetration", penetration), ("limit", limit)])
 }

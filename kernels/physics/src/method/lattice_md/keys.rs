@@ -2,16 +2,16 @@
 
 use super::model::OnLongStep;
 use super::neighbor_list::Rebuild;
-use super::options::{By, EngineChoice, Inertia, IntegratorKind, ProgramText};
+use super::options::{EngineChoice, Inertia, IntegratorKind, ProgramVersion, SearchKind};
 use crate::method::pairwise::search::OnConflict;
-use crate::scene::Bounds::{NonNegative, Positive, Within};
 use crate::scene::Fallback::{Is, Otherwise, Required};
-use crate::scene::Kind::{Choice, Number, OneOf, Switch};
+use crate::scene::KeyValueKind::{Choice, Number, OneOf, Switch};
+use crate::scene::NumberRange::{NonNegative, Positive, Within};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, OUTPUT, PLANAR_DOMAIN,
-    PRECISION, Reason, Renamed, STEP, STEPPED_RUN, SUMMED, SceneError, TARGETED, Use, Value, Values,
-    Vocabulary, disagreements, too_many_steps,
+    ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, KeyValue, MistakeKind,
+    OUTPUT, PLANAR_DOMAIN, PRECISION, RenamedKey, STEP, STEPPED_RUN, SUMMED, SceneError, SceneValues,
+    TARGETED, Use, Vocabulary, disagreements, too_many_steps,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;
@@ -49,7 +49,7 @@ define_keys! {
     STOP_PENETRATION = "law" "stop_penetration", Number(Within(1.0)), "", Is("0.3"), ALWAYS,
         "Penetration that stops the run.";
 
-    SEARCH = "search" "by", Choice(By::WORDS), "", Is("\"auto\""), ALWAYS,
+    SEARCH = "search" "by", Choice(SearchKind::WORDS), "", Is("\"auto\""), ALWAYS,
         "Search for contacts: on the exclusive lattice of BP93, in sectors that hold any number of discs (fast engine only), or by neighbour lists; auto uses the fastest that the scene allows.";
     CELL_EDGE = "search" "cell_edge", Number(Positive), "length", Otherwise("the fewest cells"), ON_CELLS,
         "Side d of a lattice cell; fitted to periodic sides. BP93 has d = R_max.";
@@ -71,7 +71,7 @@ define_keys! {
 
     ENGINE = "machine" "engine", Choice(EngineChoice::WORDS), "", Is("\"auto\""), ALWAYS,
         "Engine: fast visits each pair once and evaluates the law for contacts only; programs are BP93's vector programs over the whole lattice, equal up to rounding. auto is fast, unless a key of the programs is given.";
-    TEXT = "machine" "text", Choice(ProgramText::WORDS), "", Is("\"ours\""), PROGRAMS,
+    TEXT = "machine" "text", Choice(ProgramVersion::WORDS), "", Is("\"ours\""), PROGRAMS,
         "Version of the programs: ours, or those printed in BP93, with its vectors Index, Test and contact_i, products instead of branches, and unscaled Gear derivatives.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
         "Execution of programs: chained in registers, one whole-lattice pass for each instruction, or in strips of N; all give the same bits.";
@@ -110,12 +110,12 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
 
 macro_rules! renamed {
     ($($old:literal => $new:literal,)*) => {
-        &[$(Renamed { old: $old, new: $new }),*]
+        &[$(RenamedKey { old: $old, new: $new }),*]
     };
 }
 
 /// Keys of format 1 that have been renamed.
-const RENAMED: &[Renamed] = renamed! {
+const RENAMED: &[RenamedKey] = renamed! {
     "method.kind" => "[search] by = \"lattice\", \"sectors\" or \"neighbor-list\", whichever it was; [method] kind = \"lattice-md\"",
     "method.cell_edge" => "the same in [search]",
     "method.mask" => "the same in [search]",
@@ -129,7 +129,7 @@ const RENAMED: &[Renamed] = renamed! {
 };
 
 /// Contradictions between the keys of law, search and machine.
-fn own_rules(values: &Values) -> Vec<SceneError> {
+fn own_rules(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = Vec::new();
     let [low, high] = [&MAX_PENETRATION, &STOP_PENETRATION];
     if let (Some(a), Some(b)) = (values.number(low), values.number(high))
@@ -141,17 +141,17 @@ fn own_rules(values: &Values) -> Vec<SceneError> {
             low.path(),
             high.path()
         );
-        errors.push(values.spot(later).error(Reason::Contradiction, message));
+        errors.push(values.spot(later).error(MistakeKind::Contradiction, message));
     }
     errors.extend(search_and_engine(values));
-    if values.choice(&TEXT).as_deref() == Some(ProgramText::Printed.word()) {
+    if values.choice(&TEXT).as_deref() == Some(ProgramVersion::Printed.word()) {
         errors.extend(beyond_the_print(values));
     }
     errors
 }
 
 /// Rejects what the paper has no equation for.
-fn beyond_the_print(values: &Values) -> Vec<SceneError> {
+fn beyond_the_print(values: &SceneValues) -> Vec<SceneError> {
     let demands: [(&Key, &str, &str); 6] = [
         (&PRECISION, "\"f64\"", "BP93 has one precision, that of a CRAY's 64-bit words"),
         (&COORDINATES, "\"absolute\"", "(5) and (6) subtract the positions themselves"),
@@ -161,8 +161,8 @@ fn beyond_the_print(values: &Values) -> Vec<SceneError> {
         (&CONTACT_ARM, "\"radius\"", "the arm of (12) is the radius"),
     ];
     let differs = |key: &Key, demanded: &str| match values.value(key) {
-        Some(Value::Word(word)) => format!("\"{word}\"") != demanded,
-        Some(Value::Switch(is_on)) => is_on.to_string() != demanded,
+        Some(KeyValue::Word(word)) => format!("\"{word}\"") != demanded,
+        Some(KeyValue::Switch(is_on)) => is_on.to_string() != demanded,
         _ => false,
     };
     let refused = demands.into_iter().filter(|(key, demanded, _)| differs(key, demanded));
@@ -170,14 +170,14 @@ fn beyond_the_print(values: &Values) -> Vec<SceneError> {
         .map(|(key, demanded, why)| {
             let by = if values.gives(key) { key } else { &TEXT };
             let message = format!("BP93's printed program does not support this: {why}");
-            let error = values.spot(by).error(Reason::Contradiction, message);
+            let error = values.spot(by).error(MistakeKind::Contradiction, message);
             error.expecting(format!("{} = {demanded}, or text = \"ours\"", key.path()))
         })
         .collect()
 }
 
 /// True if a scene requests programs: by name, or by a key that only they have.
-pub(super) fn asks_for_programs(values: &Values) -> bool {
+pub(super) fn asks_for_programs(values: &SceneValues) -> bool {
     let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
     is(&ENGINE, "programs")
         || is(&ENGINE, "auto")
@@ -188,13 +188,13 @@ pub(super) fn asks_for_programs(values: &Values) -> bool {
 }
 
 /// Error of an engine and a search that do not work together.
-fn search_and_engine(values: &Values) -> Option<SceneError> {
+fn search_and_engine(values: &SceneValues) -> Option<SceneError> {
     let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
     if values.is_faulty(&ENGINE) || values.is_faulty(&SEARCH) {
         return None;
     }
     let given = |keys: &[&'static Key]| keys.iter().copied().find(|key| values.gives(key));
-    let refused = |key: &Key, message: &str| values.spot(key).error(Reason::Contradiction, message);
+    let refused = |key: &Key, message: &str| values.spot(key).error(MistakeKind::Contradiction, message);
     if asks_for_programs(values) {
         let by = given(&[&ENGINE, &TEXT, &EXECUTION, &COORDINATES, &REBUILD]).unwrap_or(&ENGINE);
         if is(&SEARCH, "sectors") {

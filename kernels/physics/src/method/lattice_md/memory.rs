@@ -5,11 +5,11 @@
 //! discs and cells is one constant.
 
 use super::assemble::{contacts, model_following_energy};
-use super::check::Checked;
-use super::options::ProgramText;
-use super::{Contacts, Discs, FastSearch, Lengths, Model, Scheme, programs};
-use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
-use crate::near::Near;
+use super::check::CheckedGranularScene;
+use super::options::ProgramVersion;
+use super::{ContactSearch, DiscUniformity, FastSearch, GranularModel, GranularScheme, Lengths, programs};
+use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
+use crate::near::NeighbourSearch;
 use crate::particles::Particle;
 use crate::scene::Precision;
 use std::collections::BTreeMap;
@@ -23,23 +23,23 @@ const SHARED: f64 = 3.5e6;
 const DISC: f64 = size_of::<Particle>() as f64;
 
 /// Returns the peak memory of a run of a checked scene.
-pub fn foreseen(checked: &Checked) -> Foreseen {
-    let of = Sizes::of(checked);
+pub fn foreseen(checked: &CheckedGranularScene) -> MemoryForecast {
+    let of = GranularSizes::of(checked);
     let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
     let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed();
-    let near = Near::bytes(checked.particles.len()) as f64;
+    let near = NeighbourSearch::bytes(checked.particles.len()) as f64;
     let (mut cells, mut rows) = (0.0, 0.0);
     let ([engine, columns], observed) = match contacts(checked) {
-        Contacts::Fast(search) => {
+        ContactSearch::Fast(search) => {
             (cells, rows) = (of.cells(search), of.rows(search));
             let [engine, columns] = of.fast(search);
             ([engine + cells, columns], of.observed())
         }
-        Contacts::Lattice => {
+        ContactSearch::Lattice => {
             let [arrays, columns] = of.programs(false);
             ([arrays + registers(checked, &of.model), columns], (DISC + 16.0) * of.discs + near)
         }
-        Contacts::Lists(options) => {
+        ContactSearch::Lists(options) => {
             let [arrays, columns] = of.programs(true);
             ([arrays + of.rival(options.skin), columns], (DISC + 16.0) * of.discs + near)
         }
@@ -52,19 +52,19 @@ pub fn foreseen(checked: &Checked) -> Foreseen {
     // Particle copies are built one degree of freedom after the other.
     let standing = 2.0 * frame + (2.0 * 8.0 + 4.0) * of.discs;
     let moments = [standing, frame + observed, frame + columns, resumed];
-    Foreseen {
+    MemoryForecast {
         needed: (kept + engine + moments.into_iter().fold(0.0, f64::max)) as u64,
         available: available(),
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
         remedy: "use fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
                  \"sectors\" needs no lattice",
-        ranks: OfRanks::in_bands(of.discs, cells, [rows, of.state * of.discs]),
+        ranks: RankMemory::in_bands(of.discs, cells, [rows, of.state * of.discs]),
     }
 }
 
 /// Sizes that the formulas use.
-struct Sizes {
-    model: Model,
+struct GranularSizes {
+    model: GranularModel,
     sides: [f64; 2],
     /// Sides of a sector, if any (length).
     widest_cell: [f64; 2],
@@ -79,16 +79,16 @@ struct Sizes {
     force: f64,
 }
 
-impl Sizes {
-    fn of(checked: &Checked) -> Sizes {
-        let Checked { scene, domain, particles, .. } = checked;
+impl GranularSizes {
+    fn of(checked: &CheckedGranularScene) -> GranularSizes {
+        let CheckedGranularScene { scene, domain, particles, .. } = checked;
         let [smallest, largest] = particles.radii().unwrap_or([1.0; 2]);
         let (state, force) = match scene.machine.precision {
             Precision::F64 => (8.0, 8.0),
             Precision::F32 => (4.0, 4.0),
             Precision::Mixed => (8.0, 4.0),
         };
-        Sizes {
+        GranularSizes {
             model: model_following_energy(checked),
             sides: domain.lengths(),
             widest_cell: checked.geometry.widest_cell,
@@ -106,7 +106,7 @@ impl Sizes {
     }
 
     fn varying(&self) -> f64 {
-        f64::from(u8::from(self.model.discs == Discs::Varying))
+        f64::from(u8::from(self.model.discs == DiscUniformity::Varying))
     }
 
     /// Bytes of the crossed periods, if they are counted.
@@ -131,8 +131,8 @@ impl Sizes {
     }
 
     /// Bytes of the temporary parts of the lists that the fast engine rebuilds when a run resumes.
-    fn lists_resumed(&self, contacts: Contacts) -> f64 {
-        let Contacts::Fast(FastSearch::Lists { skin }) = contacts else { return 0.0 };
+    fn lists_resumed(&self, contacts: ContactSearch) -> f64 {
+        let ContactSearch::Fast(FastSearch::Lists { skin }) = contacts else { return 0.0 };
         let pairs = 0.5 * self.neighbours(self.reach + skin);
         8.0 * pairs * self.discs
     }
@@ -166,8 +166,8 @@ impl Sizes {
     /// Number of derivatives carried from step to step.
     fn carried(&self) -> f64 {
         match self.model.scheme {
-            Scheme::Gear(values) => values.count() as f64,
-            Scheme::VelocityVerlet => 2.0,
+            GranularScheme::Gear(values) => values.count() as f64,
+            GranularScheme::VelocityVerlet => 2.0,
         }
     }
 
@@ -186,7 +186,7 @@ impl Sizes {
 
     /// Bytes of the arrays of the programs, and of the columns of their checkpoints.
     fn programs(&self, lists: bool) -> [f64; 2] {
-        let Sizes { model, discs, state, force, .. } = self;
+        let GranularSizes { model, discs, state, force, .. } = self;
         let (varying, friction) = (self.varying(), self.friction());
         let padded = model.shape.padded() as f64;
         let derivatives = self.freedoms() * model.scheme.values() as f64;
@@ -194,7 +194,7 @@ impl Sizes {
         let absolute = f64::from(u8::from(model.coordinates == Coordinates::Absolute));
         let power = f64::from(u8::from(model.counts_dissipation()));
         // The printed programs have R and M beside the state, and the lattice vector Test.
-        let printed = model.text == ProgramText::Printed;
+        let printed = model.text == ProgramVersion::Printed;
         let test = f64::from(u8::from(printed));
         // Lists store forces by disc, with the numbers of the discs instead of those of the cells.
         let (forces, numbers) = if lists { (*discs, 2.0) } else { (padded, 1.0) };
@@ -228,7 +228,7 @@ impl Sizes {
 }
 
 /// Bytes of the vector registers of an execution that stores every result.
-fn registers(checked: &Checked, model: &Model) -> f64 {
+fn registers(checked: &CheckedGranularScene, model: &GranularModel) -> f64 {
     let (machine, particles) = (&checked.scene.machine, &checked.particles);
     let lengths = Lengths::new(model, particles.grain_count(), particles.len());
     let programs = programs(model, machine.precision);

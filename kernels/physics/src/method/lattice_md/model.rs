@@ -1,17 +1,17 @@
 //! Model of a scene: only the parts that the scene needs.
 
-use super::options::ProgramText;
+use super::options::ProgramVersion;
 use crate::domain::Domain;
-use crate::observe::Scenery;
+use crate::observe::SceneProperties;
 use crate::particles::longest_step;
 use crate::words::define_words;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::gear::Acceleration;
 use stripmine_kernels::isa::Storage;
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::law::granular::{Contact, Disc};
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::law::granular::{Contact, EqualDiscs};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape};
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame, LatticeShape};
 
 /// Number of derivatives in Gear's scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -40,40 +40,40 @@ impl GearValues {
 
 /// Integration scheme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
+pub enum GranularScheme {
     /// Gear's predictor–corrector.
     Gear(GearValues),
     /// Velocity Verlet.
     VelocityVerlet,
 }
 
-impl Scheme {
+impl GranularScheme {
     /// Name in reports: `gear4`, `gear5`, `gear6` or `velocity-verlet`.
     pub fn name(self) -> &'static str {
         match self {
-            Scheme::Gear(GearValues::Four) => "gear4",
-            Scheme::Gear(GearValues::Five) => "gear5",
-            Scheme::Gear(GearValues::Six) => "gear6",
-            Scheme::VelocityVerlet => "velocity-verlet",
+            GranularScheme::Gear(GearValues::Four) => "gear4",
+            GranularScheme::Gear(GearValues::Five) => "gear5",
+            GranularScheme::Gear(GearValues::Six) => "gear6",
+            GranularScheme::VelocityVerlet => "velocity-verlet",
         }
     }
 
     /// Number of scaled derivatives of a degree of freedom: position, velocity, acceleration and higher ones.
     pub const fn values(self) -> usize {
         match self {
-            Scheme::Gear(values) => values.count(),
-            Scheme::VelocityVerlet => 3,
+            GranularScheme::Gear(values) => values.count(),
+            GranularScheme::VelocityVerlet => 3,
         }
     }
 }
 
 /// Equal or different discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Discs {
+pub enum DiscUniformity {
     /// All equal: radius, mass and inertia are numbers, not vectors.
     Equal {
         /// Radius and inverse mass.
-        disc: Disc,
+        disc: EqualDiscs,
         /// Inverse moment of inertia.
         inverse_inertia: f64,
     },
@@ -83,7 +83,7 @@ pub enum Discs {
 
 /// Limits of contact depths and step lengths; penetrations are fractions of the sum of the radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Watch {
+pub struct ContactWatch {
     /// Deeper contacts are counted.
     pub max_penetration: f64,
     /// Deeper contacts stop the run.
@@ -108,13 +108,13 @@ define_words! {
     }
 }
 
-impl Watch {
+impl ContactWatch {
     /// Detects contacts that are too deep (fractions of the sum of the radii) and stops at discs that are too fast, if no radius is below
     /// `smallest_radius` (length). Tracks neither energy nor motion.
-    pub fn new(max_penetration: f64, stop_penetration: f64, smallest_radius: f64) -> Watch {
+    pub fn new(max_penetration: f64, stop_penetration: f64, smallest_radius: f64) -> ContactWatch {
         let on_long_step = OnLongStep::Stop;
         let [energy, motion] = [false; 2];
-        Watch { max_penetration, stop_penetration, smallest_radius, on_long_step, energy, motion }
+        ContactWatch { max_penetration, stop_penetration, smallest_radius, on_long_step, energy, motion }
     }
 
     /// Penetration (length) below which no pair exceeds the fraction `max_penetration`. Programs search with it, so that only what they find is
@@ -131,26 +131,26 @@ impl Watch {
 }
 
 /// Sides of the area that a lattice fills (length).
-pub(crate) fn filled(shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
+pub(crate) fn filled(shape: &LatticeShape, frame: &LatticeFrame) -> [f64; 2] {
     let counts = [shape.columns(), shape.rows()];
     [0, 1].map(|axis| counts[axis] as f64 * frame.edge[axis])
 }
 
 /// Sides of a box (length) in steps: along periodic sides exactly the area that the lattice fills.
-pub(crate) fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &Frame) -> [f64; 2] {
+pub(crate) fn sides_of(domain: &Domain, shape: &LatticeShape, frame: &LatticeFrame) -> [f64; 2] {
     let filled = filled(shape, frame);
     [0, 1].map(|axis| if domain.is_periodic(axis) { filled[axis] } else { domain.length(axis) })
 }
 
 /// Model and its lattice.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model {
+pub struct GranularModel {
     /// Version of the programs. Those of BP93 have friction, different discs and absolute positions, even where a scene needs none.
-    pub text: ProgramText,
+    pub text: ProgramVersion,
     /// The lattice.
     pub shape: LatticeShape,
     /// Origin and cell sides of the lattice.
-    pub frame: Frame,
+    pub frame: LatticeFrame,
     /// Sides of the box (length). The lattice fills periodic sides exactly and may extend beyond closed ones.
     pub sides: [f64; 2],
     /// Neighbourhood, visited from both sides.
@@ -162,20 +162,20 @@ pub struct Model {
     /// True with friction, and with it rotation, torque and spin.
     pub friction: bool,
     /// Equal or different discs.
-    pub discs: Discs,
+    pub discs: DiscUniformity,
     /// Moment of inertia of a disc of mass and radius 1: ½ for a disc, ⅖ for a sphere.
     pub inertia_factor: f64,
     /// The integrator.
-    pub scheme: Scheme,
+    pub scheme: GranularScheme,
     /// Time step (time).
     pub dt: f64,
     /// Acceleration of gravity (length/time²).
     pub gravity: [f64; 2],
     /// Checks of a run; without them the programs are those of BP93.
-    pub watch: Option<Watch>,
+    pub watch: Option<ContactWatch>,
 }
 
-impl Model {
+impl GranularModel {
     /// Degrees of freedom of a disc.
     pub fn freedoms(&self) -> usize {
         if self.friction { 3 } else { 2 }
@@ -184,8 +184,8 @@ impl Model {
     /// Radius of every disc (length), if all are equal.
     pub fn radius(&self) -> Option<f64> {
         match self.discs {
-            Discs::Equal { disc, .. } => Some(disc.radius),
-            Discs::Varying => None,
+            DiscUniformity::Equal { disc, .. } => Some(disc.radius),
+            DiscUniformity::Varying => None,
         }
     }
 
@@ -244,8 +244,8 @@ impl Model {
     }
 
     /// Quantities to evaluate with the contacts.
-    pub fn asked(&self) -> Asked {
-        Asked {
+    pub fn asked(&self) -> ObservationRequest {
+        ObservationRequest {
             watched: self.watch.map(|watch| watch.depth()),
             dissipation: self.counts_dissipation(),
             energy: false,
@@ -277,18 +277,18 @@ impl Model {
     /// Mass and inertia that forces and torques are divided by.
     pub fn inertia(&self) -> Inertia {
         match self.discs {
-            Discs::Equal { disc, inverse_inertia } => {
+            DiscUniformity::Equal { disc, inverse_inertia } => {
                 Inertia::Equal { inverse_mass: disc.inverse_mass, inverse_inertia }
             }
-            Discs::Varying => Inertia::Varying,
+            DiscUniformity::Varying => Inertia::Varying,
         }
     }
 }
 
-impl Scenery {
+impl SceneProperties {
     /// Scenery of a model.
-    pub fn of(model: &Model) -> Scenery {
-        Scenery {
+    pub fn of(model: &GranularModel) -> SceneProperties {
+        SceneProperties {
             domain: model.domain(),
             contact: model.contact,
             gravity: model.gravity,

@@ -31,7 +31,7 @@ impl Inertia {
 
 define_words! {
     /// Search for contacts.
-    pub enum By {
+    pub enum SearchKind {
         /// The fastest.
         Auto = "auto",
         /// On the exclusive lattice.
@@ -57,7 +57,7 @@ define_words! {
 
 define_words! {
     /// Version of the programs.
-    pub enum ProgramText {
+    pub enum ProgramVersion {
         /// Ours: only what a scene needs, positions relative to the cell, checks among the equations.
         Ours = "ours",
         /// Printed in BP93: Index, Test and contact_i, unscaled Gear derivatives.

@@ -1,14 +1,14 @@
 //! Checked scene and its simulation behind the interfaces shared by all methods.
 
-use super::check::{Checked, Estimates};
-use super::document::Document;
+use super::check::{CheckedGranularScene, MotionEstimates};
+use super::document::GranularDocument;
 use super::facts::{expected_error, facts};
 use super::fast::reach;
 use super::programs::with_law_of_text;
 use super::theory::limits::step_limits;
 use super::{Lengths, StepProgram, memory, model, programs, running};
-use crate::method::pairwise::ToReach;
-use crate::method::{Failure, Prepared, Purpose, Schedule, Simulation, Startable, VectorProgram};
+use crate::method::pairwise::PairForcesTask;
+use crate::method::{PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable, VectorProgram};
 use crate::particles::Particles;
 use crate::scene::{Precision, SceneErrors, WallMotion};
 use crate::structure::PairForces;
@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 use std::path::Path;
 
-impl Document {
+impl GranularDocument {
     /// Generates the discs and checks the scene against the method's preconditions, as every method does.
     ///
     /// # Errors
@@ -35,7 +35,7 @@ impl Document {
     }
 }
 
-impl Checked {
+impl CheckedGranularScene {
     /// Prepared scene.
     fn prepared(self) -> Prepared {
         let scene = &self.scene;
@@ -61,7 +61,7 @@ impl Checked {
     }
 
     fn settings(&self) -> Map<String, Value> {
-        let Checked { scene, domain, particles, geometry, .. } = self;
+        let CheckedGranularScene { scene, domain, particles, geometry, .. } = self;
         let discs: f64 = particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2)).sum();
         let cell_edge = scene.needs_lattice().then_some(geometry.frame.edge);
         let settings = [
@@ -78,7 +78,7 @@ impl Checked {
     }
 }
 
-impl Startable for Checked {
+impl Startable for CheckedGranularScene {
     fn particles(&self) -> &Particles {
         &self.particles
     }
@@ -123,20 +123,20 @@ impl Startable for Checked {
     }
 
     fn pair_forces(&self) -> Option<PairForces> {
-        Some(with_law_of_text(&model(self), ToReach(reach(&self.particles))))
+        Some(with_law_of_text(&model(self), PairForcesTask(reach(&self.particles))))
     }
 
     fn follows_crossings(&self) -> bool {
         true
     }
 
-    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+    fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         Ok(Box::new(running::begin(self, purpose)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {
-        let estimates = Estimates::of(&self.scene, &particles);
-        Checked { particles, estimates, ..self.clone() }.prepared()
+        let estimates = MotionEstimates::of(&self.scene, &particles);
+        CheckedGranularScene { particles, estimates, ..self.clone() }.prepared()
     }
 
     fn period(&self) -> Option<f64> {

@@ -1,25 +1,25 @@
 //! Observed quantities of granular discs, each with the function that evaluates it.
 
-use super::Totals;
-use super::balance::Balance;
-use crate::method::Kind::{Counter, Instant, Kept, Time};
+use super::GranularTotals;
+use super::balance::EnergyBalance;
+use crate::method::QuantityKind::{Counter, Instant, Kept, Time};
 use crate::method::observed::observables;
-use crate::method::{Observable, Quantity, quantities};
+use crate::method::{MethodObservable, ObservedQuantity, quantities};
 use crate::observe::Observation;
 
 /// Observation of a moment, made once: rows, warnings, summary and closing words read the same data.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Seen {
+pub(super) struct GranularObservation {
     /// Sums over the discs and their contacts.
     pub(super) now: Observation,
     /// Energy balance.
-    pub(super) balance: Balance,
+    pub(super) balance: EnergyBalance,
     /// Counts and sums since the start.
-    pub(super) totals: Totals,
+    pub(super) totals: GranularTotals,
 }
 
 /// Observables, in the order of the columns.
-pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
+pub(super) const OBSERVABLES: [MethodObservable<GranularObservation>; 18] = observables! {
     "time", "time", Time, |seen| seen.now.time, "The time.";
     "kinetic", "energy", Instant, |seen| seen.now.kinetic, "Kinetic energy of the grains' translation.";
     "rotational", "energy", Instant, |seen| seen.now.rotational, "Kinetic energy of their rotation.";
@@ -49,4 +49,4 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 18] = observables! {
 };
 
 /// Names, units and meanings of the observables.
-pub(super) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);
+pub(super) const QUANTITIES: &[ObservedQuantity] = &quantities(&OBSERVABLES);

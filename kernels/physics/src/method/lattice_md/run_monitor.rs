@@ -1,10 +1,10 @@
 //! Periodic check of a run that would be too expensive in every step: typical speeds, and with them the steps a contact takes and the part of a step
 //! lost to rounding.
 
-use super::check::{Checked, FEWEST_STEPS, MUCH_LOST, rounding};
+use super::check::{CheckedGranularScene, FEWEST_STEPS, MUCH_LOST, rounding};
 use super::theory::contact::HeadOn;
 use super::theory::limits;
-use crate::io::checkpoint::Counter;
+use crate::io::checkpoint::CheckpointCounter;
 use crate::method::RunWarning;
 use crate::number::significant;
 use crate::observe::GrainSums;
@@ -30,7 +30,7 @@ pub(super) struct RunMonitor {
 
 impl RunMonitor {
     /// Monitor of a scene, before the first sample.
-    pub(super) fn of(checked: &Checked) -> RunMonitor {
+    pub(super) fn of(checked: &CheckedGranularScene) -> RunMonitor {
         RunMonitor {
             contact: limits::contact(checked, 1.0),
             dt: checked.scene.integrator.dt,
@@ -58,20 +58,25 @@ impl RunMonitor {
     }
 
     /// Returns the extremes for a checkpoint.
-    pub(super) fn counters(&self) -> impl Iterator<Item = (String, Counter)> {
-        COUNTERS.iter().zip(self.typical).map(|(name, speed)| ((*name).to_owned(), Counter::Sum(speed)))
+    pub(super) fn counters(&self) -> impl Iterator<Item = (String, CheckpointCounter)> {
+        COUNTERS
+            .iter()
+            .zip(self.typical)
+            .map(|(name, speed)| ((*name).to_owned(), CheckpointCounter::Sum(speed)))
     }
 
     /// Restores the extremes.
     ///
     /// # Errors
     /// Says which one is missing or invalid.
-    pub(super) fn restore(&mut self, counters: &BTreeMap<String, Counter>) -> Result<(), String> {
+    pub(super) fn restore(&mut self, counters: &BTreeMap<String, CheckpointCounter>) -> Result<(), String> {
         for (name, speed) in COUNTERS.into_iter().zip(&mut self.typical) {
             match counters.get(name) {
                 // The slowest speed is infinite if nothing has moved.
-                Some(Counter::Sum(value)) if *value >= 0.0 => *speed = *value,
-                Some(Counter::Sum(value)) => return Err(format!("the sum {name} is {value}, not a speed")),
+                Some(CheckpointCounter::Sum(value)) if *value >= 0.0 => *speed = *value,
+                Some(CheckpointCounter::Sum(value)) => {
+                    return Err(format!("the sum {name} is {value}, not a speed"));
+                }
                 _ => return Err(format!("the sum {name} is missing")),
             }
         }

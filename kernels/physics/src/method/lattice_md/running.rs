@@ -1,21 +1,21 @@
 //! Runs of granular discs: observations, energy balance, summary.
 
 use super::assemble::model_following_energy;
-use super::balance::{Way, Work};
-use super::check::Checked;
+use super::balance::{BalanceTerms, GravityPath};
+use super::check::CheckedGranularScene;
 use super::checks;
-use super::quantities::{OBSERVABLES, Seen};
+use super::quantities::{GranularObservation, OBSERVABLES};
 use super::run_monitor::RunMonitor;
 use super::{
-    Discs, Grains, Lengths, Model, Total, Totals, assemble, assemble_following_energy, ledger, model,
-    programs,
+    DiscUniformity, GranularModel, GranularTotals, Lengths, SteppedGrains, TotalEntry, assemble,
+    assemble_following_energy, ledger, model, programs,
 };
-use crate::io::checkpoint::Counter;
+use crate::io::checkpoint::CheckpointCounter;
 use crate::method::pairwise::Crossings;
 use crate::method::stepped::{Stepped, Stepwise};
-use crate::method::{Clock, Failure, Observable, Purpose, RunWarning, Snapshot};
+use crate::method::{Clock, MethodObservable, PhysicsFailure, RunWarning, Snapshot, StartPurpose};
 use crate::number::significant;
-use crate::observe::{Observation, Scenery, Sums};
+use crate::observe::{Observation, ObservationSums, SceneProperties};
 use crate::scene::Precision;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -29,13 +29,13 @@ use stripmine_kernels::isa::OpCounts;
 const OBSERVING: &str = "observe";
 
 /// Data of a run beside its discs.
-pub(super) struct Granular {
-    model: Model,
-    scenery: Scenery,
+pub(super) struct GranularRun {
+    model: GranularModel,
+    scenery: SceneProperties,
     /// Energy balance since the start.
-    work: Work,
+    work: BalanceTerms,
     /// Observation of this moment, if already requested.
-    seen: OnceCell<Seen>,
+    seen: OnceCell<GranularObservation>,
     /// Seconds spent on observations: a phase outside the steps.
     observing: Cell<f64>,
     /// Columns and rows of the lattice, if the scene needs one, and discs for each cell.
@@ -51,25 +51,28 @@ pub(super) struct Granular {
 ///
 /// # Errors
 /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
-pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Stepped<Granular>, Failure> {
+pub(super) fn begin(
+    checked: &CheckedGranularScene,
+    purpose: StartPurpose,
+) -> Result<Stepped<GranularRun>, PhysicsFailure> {
     let grains = match purpose {
-        Purpose::Run => assemble_following_energy(checked)?,
-        Purpose::Measurement => assemble(checked)?,
+        StartPurpose::Run => assemble_following_energy(checked)?,
+        StartPurpose::Measurement => assemble(checked)?,
     };
-    let Checked { scene, particles, geometry, .. } = checked;
+    let CheckedGranularScene { scene, particles, geometry, .. } = checked;
     let model = model(checked);
-    let scenery = Scenery::of(&model);
-    let way = Way::begin(&scenery, grains.crossings(), || grains.unwrapped());
+    let scenery = SceneProperties::of(&model);
+    let way = GravityPath::begin(&scenery, grains.crossings(), || grains.unwrapped());
     let sums = grains.sums(&scenery, &way);
-    let work = Work::begin(way, &Observation::new(grains.steps(), grains.time(), &sums, &scenery));
-    let run_monitor = (purpose == Purpose::Run).then(|| {
+    let work = BalanceTerms::begin(way, &Observation::new(grains.steps(), grains.time(), &sums, &scenery));
+    let run_monitor = (purpose == StartPurpose::Run).then(|| {
         let mut run_monitor = RunMonitor::of(checked);
         run_monitor.look(&sums.grains);
         run_monitor
     });
     let count = particles.grain_count();
     let cells = [geometry.shape.columns(), geometry.shape.rows()];
-    let granular = Granular {
+    let granular = GranularRun {
         model,
         scenery,
         work,
@@ -83,21 +86,21 @@ pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Stepped<Granu
     Ok(Stepped::new(grains, granular))
 }
 
-impl Stepped<Granular> {
+impl Stepped<GranularRun> {
     /// Observation of this moment, computed once.
-    fn seen(&self) -> &Seen {
+    fn seen(&self) -> &GranularObservation {
         self.method.seen.get_or_init(|| {
             let (grains, sums) = (&self.state, self.sums());
             let now = Observation::new(grains.steps(), grains.time(), &sums, &self.method.scenery);
             let totals = grains.totals();
-            Seen { now, balance: self.method.work.balance(&now, &sums, &totals), totals }
+            GranularObservation { now, balance: self.method.work.balance(&now, &sums, &totals), totals }
         })
     }
 
     /// Sums over the discs and their contacts now; the time is recorded.
-    fn sums(&self) -> Sums {
+    fn sums(&self) -> ObservationSums {
         let start = Instant::now();
-        let Granular { scenery, work, observing, .. } = &self.method;
+        let GranularRun { scenery, work, observing, .. } = &self.method;
         let sums = self.state.sums(scenery, work.way());
         observing.set(observing.get() + start.elapsed().as_secs_f64());
         sums
@@ -108,14 +111,14 @@ impl Stepped<Granular> {
         if self.state.ledger().parts().is_empty() {
             return None;
         }
-        let Granular { model, discs: [grains, walls], .. } = &self.method;
+        let GranularRun { model, discs: [grains, walls], .. } = &self.method;
         let lengths = Lengths::new(model, *grains, grains + walls);
-        let work = |model: &Model| -> u64 {
+        let work = |model: &GranularModel| -> u64 {
             let parts = ledger(&programs(model, Precision::F64)).parts();
             let cost = parts.iter();
             cost.map(|(_, length, counts)| counts.total() * lengths.range(*length).len() as u64).sum()
         };
-        let everything = Model { friction: true, discs: Discs::Varying, ..model.clone() };
+        let everything = GranularModel { friction: true, discs: DiscUniformity::Varying, ..model.clone() };
         Some(work(model) as f64 / work(&everything) as f64)
     }
 }
@@ -132,7 +135,7 @@ struct LedgerRow {
     operations: u64,
 }
 
-fn ledger_rows(grains: &Grains) -> Vec<LedgerRow> {
+fn ledger_rows(grains: &SteppedGrains) -> Vec<LedgerRow> {
     let parts = grains.ledger().parts();
     let rows = parts.iter().map(|(part, length, counts)| LedgerRow {
         part,
@@ -143,12 +146,12 @@ fn ledger_rows(grains: &Grains) -> Vec<LedgerRow> {
     rows.collect()
 }
 
-impl Stepwise for Granular {
-    type State = Grains;
-    type Seen = Seen;
-    const OBSERVABLES: &'static [Observable<Seen>] = &OBSERVABLES;
+impl Stepwise for GranularRun {
+    type State = SteppedGrains;
+    type Seen = GranularObservation;
+    const OBSERVABLES: &'static [MethodObservable<GranularObservation>] = &OBSERVABLES;
 
-    fn step(run: &mut Stepped<Self>, _interrupted: &AtomicBool) -> Result<bool, Failure> {
+    fn step(run: &mut Stepped<Self>, _interrupted: &AtomicBool) -> Result<bool, PhysicsFailure> {
         run.method.seen.take();
         run.state.step()?;
         if run.method.run_monitor.is_some() && RunMonitor::is_due(run.state.steps()) {
@@ -158,24 +161,24 @@ impl Stepwise for Granular {
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Seen) -> R) -> R {
+    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&GranularObservation) -> R) -> R {
         work(run.seen())
     }
 
     fn keep(run: &Stepped<Self>, kept: &mut Snapshot) {
         for (name, total) in run.state.totals().entries() {
             match total {
-                Total::Count(count) => kept.add_count(name, count),
-                Total::Sum(sum) => kept.add_sum(name, sum),
+                TotalEntry::Count(count) => kept.add_count(name, count),
+                TotalEntry::Sum(sum) => kept.add_sum(name, sum),
             }
         }
         kept.counters.extend(run.method.run_monitor.iter().flat_map(RunMonitor::counters));
     }
 
     fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
-        let totals = Totals::from_entries(|name| match snapshot.counters.get(name)? {
-            Counter::Count(count) => Some(Total::Count(*count)),
-            Counter::Sum(sum) => Some(Total::Sum(*sum)),
+        let totals = GranularTotals::from_entries(|name| match snapshot.counters.get(name)? {
+            CheckpointCounter::Count(count) => Some(TotalEntry::Count(*count)),
+            CheckpointCounter::Sum(sum) => Some(TotalEntry::Sum(*sum)),
         });
         let discs = run.method.discs[0] + run.method.discs[1];
         let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
@@ -211,7 +214,8 @@ impl Stepwise for Granular {
     }
 
     fn summary(run: &Stepped<Self>) -> Vec<(&'static str, Value)> {
-        let (Seen { now, balance, totals, .. }, Granular { discs, lattice, .. }) = (run.seen(), &run.method);
+        let (GranularObservation { now, balance, totals, .. }, GranularRun { discs, lattice, .. }) =
+            (run.seen(), &run.method);
         let lists = run.state.lists();
         vec![
             ("discs", json!({ "grains": discs[0], "walls": discs[1] })),
@@ -234,7 +238,8 @@ impl Stepwise for Granular {
     }
 
     fn warnings(run: &Stepped<Self>) -> Vec<RunWarning> {
-        let (Seen { balance, totals, .. }, run_monitor) = (run.seen(), &run.method.run_monitor);
+        let (GranularObservation { balance, totals, .. }, run_monitor) =
+            (run.seen(), &run.method.run_monitor);
         let passed = run.method.work.passed(balance);
         let energy = run_monitor.as_ref().and_then(|_| checks::energy(balance, passed));
         let looked = run_monitor.iter().flat_map(RunMonitor::warnings);
@@ -242,7 +247,7 @@ impl Stepwise for Granular {
     }
 
     fn in_words(run: &Stepped<Self>) -> String {
-        let ([grains, walls], Seen { now, .. }) = (run.method.discs, run.seen());
+        let ([grains, walls], GranularObservation { now, .. }) = (run.method.discs, run.seen());
         let mut text = format!("{grains} grains and {walls} wall discs");
         if let Some(([columns, rows], occupancy)) = run.method.lattice {
             let occupancy = significant(occupancy, 4);

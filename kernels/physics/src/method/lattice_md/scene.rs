@@ -1,13 +1,13 @@
 //! Scene of this method as plain data.
 
 use super::keys::*;
-use super::model::{GearValues, OnLongStep, Scheme};
+use super::model::{GearValues, GranularScheme, OnLongStep};
 use super::neighbor_list::Rebuild;
-pub use super::options::{By, EngineChoice, Inertia, IntegratorKind, ProgramText};
+pub use super::options::{EngineChoice, Inertia, IntegratorKind, ProgramVersion, SearchKind};
 use crate::method::pairwise::search::OnConflict;
 use crate::scene::{
-    Binding, DT, Domain, Output, Precision, Run, Start, WallMotion, Write, bind_arithmetic, bind_execution,
-    bind_heading, execution_name,
+    Binding, DT, DiscStart, Output, Precision, RunKeys, SceneDomain, WallMotion, Write, bind_arithmetic,
+    bind_execution, bind_heading, execution_name,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::{Contact, ContactArm};
@@ -17,32 +17,32 @@ use stripmine_kernels::{Execution, InstructionSet};
 
 /// Simulated scene. Units are the scene's own; `units` names them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Scene {
+pub struct GranularScene {
     /// The unit system: a label.
     pub units: String,
     /// The box.
-    pub domain: Domain,
+    pub domain: SceneDomain,
     /// The discs at the start.
-    pub start: Start,
+    pub start: DiscStart,
     /// Motion of wall discs.
     pub walls: WallMotion,
     /// Contact law.
-    pub law: Law,
+    pub law: GranularLaw,
     /// Search for contacts.
-    pub search: Search,
+    pub search: SearchSettings,
     /// Integrator.
     pub integrator: Integrator,
     /// Engine, precision and instruction set.
-    pub machine: Machine,
+    pub machine: MachineSettings,
     /// Length of the run and intervals of its output.
-    pub run: Run,
+    pub run: RunKeys,
     /// Files to write.
     pub output: Output,
 }
 
 /// The granular contact law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Law {
+pub struct GranularLaw {
     /// Spring, dampings, friction, clamp and arm.
     pub contact: Contact,
     /// Distribution of mass in a disc.
@@ -53,7 +53,7 @@ pub struct Law {
     pub stop_penetration: f64,
 }
 
-impl Default for Law {
+impl Default for GranularLaw {
     fn default() -> Self {
         let contact = Contact {
             spring: Spring::Hertz,
@@ -64,11 +64,11 @@ impl Default for Law {
             cohesionless: true,
             arm: ContactArm::Radius,
         };
-        Law { contact, inertia: Inertia::Disc, max_penetration: 0.0, stop_penetration: 0.0 }
+        GranularLaw { contact, inertia: Inertia::Disc, max_penetration: 0.0, stop_penetration: 0.0 }
     }
 }
 
-impl Law {
+impl GranularLaw {
     /// True with a tangential force, and with it rotation.
     pub(crate) fn has_friction(&self) -> bool {
         self.contact.friction > 0.0 && self.contact.shear_damping > 0.0
@@ -90,9 +90,9 @@ impl Law {
 
 /// Search for contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Search {
+pub struct SearchSettings {
     /// Lattice, sectors or lists.
-    pub by: By,
+    pub by: SearchKind,
     /// Side of a lattice cell (length); none for the fewest cells.
     pub(crate) cell_edge: Option<f64>,
     /// Width of the mask in cells, 5 or 7; none for the smallest that works.
@@ -105,17 +105,17 @@ pub struct Search {
     pub skin: Option<f64>,
 }
 
-impl Search {
+impl SearchSettings {
     fn bind(&mut self, binding: &mut dyn Binding) {
         binding.choice(&SEARCH, &mut self.by);
-        if self.by != By::Sectors {
+        if self.by != SearchKind::Sectors {
             binding.number_if_any(&CELL_EDGE, &mut self.cell_edge);
             binding.whole_if_any(&MASK, &mut self.mask);
         }
-        if matches!(self.by, By::Auto | By::Lattice) {
+        if matches!(self.by, SearchKind::Auto | SearchKind::Lattice) {
             binding.choice(&ON_CONFLICT, &mut self.on_conflict);
         }
-        if self.by == By::NeighborList {
+        if self.by == SearchKind::NeighborList {
             binding.choice(&REBUILD, &mut self.rebuild);
             binding.number_if_any(&SKIN, &mut self.skin);
         }
@@ -124,11 +124,11 @@ impl Search {
 
 /// Engine, precision and instruction set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Machine {
+pub struct MachineSettings {
     /// Engine that steps the discs.
     pub engine: EngineChoice,
     /// Version of the programs.
-    pub text: ProgramText,
+    pub text: ProgramVersion,
     /// Execution of the programs.
     pub execution: Execution,
     /// Origin of positions in programs.
@@ -139,11 +139,11 @@ pub struct Machine {
     pub instruction_set: Option<InstructionSet>,
 }
 
-impl Default for Machine {
+impl Default for MachineSettings {
     fn default() -> Self {
-        Machine {
+        MachineSettings {
             engine: EngineChoice::Auto,
-            text: ProgramText::Ours,
+            text: ProgramVersion::Ours,
             execution: Execution::Chained,
             coordinates: Coordinates::CellRelative,
             precision: Precision::F64,
@@ -152,7 +152,7 @@ impl Default for Machine {
     }
 }
 
-impl Machine {
+impl MachineSettings {
     /// True if the fast engine steps the discs.
     pub(crate) fn is_fast(&self) -> bool {
         self.engine != EngineChoice::Programs
@@ -174,7 +174,7 @@ impl Machine {
         let is_open = self.engine == EngineChoice::Auto && binding.reads();
         if self.engine == EngineChoice::Programs || is_open {
             binding.choice(&TEXT, &mut self.text);
-            if self.text == ProgramText::Printed {
+            if self.text == ProgramVersion::Printed {
                 self.coordinates = Coordinates::Absolute;
             }
             bind_execution(binding, &EXECUTION, &mut self.execution);
@@ -188,7 +188,7 @@ impl Machine {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrator {
     /// Integration scheme.
-    pub scheme: Scheme,
+    pub scheme: GranularScheme,
     /// Time step (time).
     pub dt: f64,
     /// Action for a disc that moves so far in a step that contacts may be missed.
@@ -197,25 +197,25 @@ pub struct Integrator {
 
 impl Default for Integrator {
     fn default() -> Self {
-        Integrator { scheme: Scheme::VelocityVerlet, dt: 0.0, on_long_step: OnLongStep::Stop }
+        Integrator { scheme: GranularScheme::VelocityVerlet, dt: 0.0, on_long_step: OnLongStep::Stop }
     }
 }
 
 impl Integrator {
     fn bind(&mut self, binding: &mut dyn Binding) {
         let (mut kind, mut values) = match self.scheme {
-            Scheme::Gear(values) => (IntegratorKind::Gear, values),
-            Scheme::VelocityVerlet => (IntegratorKind::VelocityVerlet, GearValues::Four),
+            GranularScheme::Gear(values) => (IntegratorKind::Gear, values),
+            GranularScheme::VelocityVerlet => (IntegratorKind::VelocityVerlet, GearValues::Four),
         };
         binding.choice(&INTEGRATOR, &mut kind);
         self.scheme = match kind {
-            IntegratorKind::VelocityVerlet => Scheme::VelocityVerlet,
+            IntegratorKind::VelocityVerlet => GranularScheme::VelocityVerlet,
             IntegratorKind::Gear => {
                 let mut count = values.count() as u64;
                 binding.whole(&VALUES, &mut count);
                 let asked = GearValues::ALL.into_iter().find(|values| values.count() as u64 == count);
                 values = asked.unwrap_or(values);
-                Scheme::Gear(values)
+                GranularScheme::Gear(values)
             }
         };
         binding.number(&DT, &mut self.dt);
@@ -223,7 +223,7 @@ impl Integrator {
     }
 }
 
-impl Scene {
+impl GranularScene {
     /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
@@ -248,9 +248,9 @@ impl Scene {
     /// True if discs need exclusive lattice cells, or are found through the mask.
     pub fn needs_lattice(&self) -> bool {
         match self.search.by {
-            By::Auto | By::Lattice => true,
-            By::Sectors => false,
-            By::NeighborList => !self.machine.is_fast(),
+            SearchKind::Auto | SearchKind::Lattice => true,
+            SearchKind::Sectors => false,
+            SearchKind::NeighborList => !self.machine.is_fast(),
         }
     }
 

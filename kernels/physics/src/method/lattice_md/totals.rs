@@ -2,7 +2,7 @@
 
 /// Counts and sums since the start of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Totals {
+pub struct GranularTotals {
     /// Grains in a contact deeper than `law.max_penetration`, summed over the steps.
     pub deep_disc_steps: u64,
     /// Deepest penetration of such a contact (a fraction of the sum of the radii).
@@ -24,7 +24,7 @@ pub struct Totals {
 
 /// Count or sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Total {
+pub enum TotalEntry {
     /// Number of occurrences.
     Count(u64),
     /// Accumulated amount.
@@ -33,20 +33,20 @@ pub enum Total {
 
 macro_rules! define_entries {
     ($($name:literal $kind:ident $field:ident,)*) => {
-        impl Totals {
+        impl GranularTotals {
             /// Returns all entries by name, for a checkpoint.
-            pub fn entries(&self) -> Vec<(&'static str, Total)> {
-                vec![$(($name, Total::$kind(self.$field))),*]
+            pub fn entries(&self) -> Vec<(&'static str, TotalEntry)> {
+                vec![$(($name, TotalEntry::$kind(self.$field))),*]
             }
 
             /// Restores totals from what [`entries`](Self::entries) returned.
             ///
             /// # Errors
             /// Returns the name of an entry that is missing or has the wrong kind.
-            pub(crate) fn from_entries(find: impl Fn(&str) -> Option<Total>) -> Result<Totals, &'static str> {
-                Ok(Totals {
+            pub(crate) fn from_entries(find: impl Fn(&str) -> Option<TotalEntry>) -> Result<GranularTotals, &'static str> {
+                Ok(GranularTotals {
                     $($field: match find($name) {
-                        Some(Total::$kind(value)) => value,
+                        Some(TotalEntry::$kind(value)) => value,
                         _ => return Err($name),
                     },)*
                 })
@@ -67,7 +67,7 @@ define_entries! {
     "wall_power" Sum wall_power,
 }
 
-impl Totals {
+impl GranularTotals {
     /// Checks that these totals are possible after a number of steps of a number of discs.
     ///
     /// # Errors
@@ -75,9 +75,9 @@ impl Totals {
     pub(super) fn are_of(&self, steps: u64, discs: u64) -> Result<(), String> {
         // The start is counted too.
         let most = (steps + 1).saturating_mul(discs);
-        let is_right = |total: Total| match total {
-            Total::Count(count) => count <= most,
-            Total::Sum(sum) => sum.is_finite(),
+        let is_right = |total: TotalEntry| match total {
+            TotalEntry::Count(count) => count <= most,
+            TotalEntry::Sum(sum) => sum.is_finite(),
         };
         match self.entries().into_iter().find(|(_, total)| !is_right(*total)) {
             None => Ok(()),
@@ -88,8 +88,8 @@ impl Totals {
     }
 
     /// Totals at the start, where contacts and walls have these powers (energy/time).
-    pub(super) fn starting_with(power: f64, wall_power: f64) -> Totals {
-        Totals { power, wall_power, ..Totals::default() }
+    pub(super) fn starting_with(power: f64, wall_power: f64) -> GranularTotals {
+        GranularTotals { power, wall_power, ..GranularTotals::default() }
     }
 
     /// Adds the work of a step of `dt` (time) by the trapezoidal rule; the powers are those at its end (energy/time).
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn totals_round_trip_through_entries() {
-        let totals = Totals {
+        let totals = GranularTotals {
             deep_disc_steps: 1,
             deepest: 0.25,
             deepest_step: 3,
@@ -128,8 +128,8 @@ mod tests {
         };
         let entries = totals.entries();
         let find = |name: &str| entries.iter().find(|(known, _)| *known == name).map(|(_, total)| *total);
-        assert_eq!(Totals::from_entries(find), Ok(totals));
-        assert_eq!(Totals::from_entries(|name| find(name).filter(|_| name != "power")), Err("power"));
-        assert_eq!(Totals::from_entries(|_| Some(Total::Count(1))), Err("deep.deepest"));
+        assert_eq!(GranularTotals::from_entries(find), Ok(totals));
+        assert_eq!(GranularTotals::from_entries(|name| find(name).filter(|_| name != "power")), Err("power"));
+        assert_eq!(GranularTotals::from_entries(|_| Some(TotalEntry::Count(1))), Err("deep.deepest"));
     }
 }

@@ -1,23 +1,23 @@
 //! Trials of granular discs: choices, parameters, twins and the theoretical order of the error.
 
-use super::document::Document;
+use super::document::GranularDocument;
 use super::encounter::encounter;
 use super::hard::hard;
 use super::keys::{
     COORDINATES, ENGINE, EXECUTION, FRICTION, INERTIA, INTEGRATOR, LAW, MAX_PENETRATION, NORMAL_DAMPING,
     SEARCH, SHEAR_DAMPING, STIFFNESS, VALUES,
 };
-use super::options::{By, EngineChoice, Inertia, IntegratorKind};
+use super::options::{EngineChoice, Inertia, IntegratorKind, SearchKind};
 use super::quantities::QUANTITIES;
 use crate::method::observed::place;
 use crate::method::trials::settings;
 use crate::method::{
-    Axis, Balance, Becomes, Decides, Parameter, Prepared, Purpose, SMALLEST_RADIUS, Setting, Shadow, Theory,
-    Trials, Twin,
+    AxisSetting, ChoiceEffect, EnergyBalanceNames, Parameter, Prepared, SMALLEST_RADIUS, SettingAxis,
+    ShadowEnergy, SimplifiedModel, StartPurpose, TheoreticalOrder, Trials, Twin,
 };
 use crate::scene::{
-    DT, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD, SPEED,
-    TEMPERATURE, VELOCITIES, Value, Values,
+    DT, KeyValue, ORIGIN, Overrides, PACKING_FRACTION, PRECISION, Precision, RADIUS_CUT, RADIUS_SPREAD,
+    SPEED, SceneValues, TEMPERATURE, VELOCITIES,
 };
 use crate::words::Words;
 use stripmine_kernels::law::spring::Spring;
@@ -30,12 +30,12 @@ pub(super) static TRIALS: Trials = Trials {
         &[("integrator", "gear6"), ("precision", "f64")],
         &[("integrator", "gear5"), ("precision", "f64")],
     ],
-    balance: Some(Balance {
+    balance: Some(EnergyBalanceNames {
         error: "balance_error",
         energies: &["kinetic", "rotational", "elastic"],
         inputs: &["gravity_work", "wall_work"],
     }),
-    shadow: Some(Shadow { integrators: &["velocity-verlet"], temperature: "temperature" }),
+    shadow: Some(ShadowEnergy { integrators: &["velocity-verlet"], temperature: "temperature" }),
     encounter,
     has_trajectories: true,
     length: SMALLEST_RADIUS,
@@ -45,7 +45,7 @@ pub(super) static TRIALS: Trials = Trials {
     inertia,
     theory,
     parameters: PARAMETERS,
-    at_any_step: |values| Document::read(values)?.prepare_at_any_step(),
+    at_any_step: |values| GranularDocument::read(values)?.prepare_at_any_step(),
 };
 
 /// Parameters that a map may vary. A value that a scene cannot have is rejected by its check and marked in the map.
@@ -141,7 +141,7 @@ const PARAMETERS: &[Parameter] = &[
 ];
 
 /// Ratio of radii up to which a cell for one smallest disc can have the side of BP93, the largest radius: √2 (1 − max_penetration).
-fn largest_ratio(values: &Values) -> Vec<(f64, String)> {
+fn largest_ratio(values: &SceneValues) -> Vec<(f64, String)> {
     let ratio = values.number(&MAX_PENETRATION).map(|depth| std::f64::consts::SQRT_2 * (1.0 - depth));
     ratio
         .map(|ratio| (ratio, format!("{ratio:.4}: limit of the lattice with 5 × 5 cells")))
@@ -155,7 +155,7 @@ fn around(value: f64, factor: f64) -> Option<[f64; 2]> {
 }
 
 /// Returns overrides that multiply the initial speeds by a factor.
-fn faster(values: &Values, factor: f64) -> Overrides {
+fn faster(values: &SceneValues, factor: f64) -> Overrides {
     let mut overrides = Overrides::new();
     for (key, power) in [(&TEMPERATURE, 2), (&SPEED, 1)] {
         if let Some(value) = values.number(key) {
@@ -163,7 +163,7 @@ fn faster(values: &Values, factor: f64) -> Overrides {
         }
     }
     match values.value(&VELOCITIES) {
-        Some(Value::Pairs(all)) => {
+        Some(KeyValue::Pairs(all)) => {
             let all: Vec<[f64; 2]> = all.iter().map(|pair| pair.map(|part| factor * part)).collect();
             overrides.set(&VELOCITIES, all)
         }
@@ -175,31 +175,34 @@ fn faster(values: &Values, factor: f64) -> Overrides {
 pub(super) const TWINS: &[Twin] = &[
     Twin {
         name: "friction and spin",
-        becomes: Becomes::Overridden(|values| {
+        becomes: SimplifiedModel::Overridden(|values| {
             (values.number(&FRICTION)? > 0.0)
                 .then(|| Overrides::new().set(&FRICTION, 0.0).set(&SHEAR_DAMPING, 0.0))
         }),
     },
     Twin {
         name: "a spread of radii",
-        becomes: Becomes::Overridden(|values| {
+        becomes: SimplifiedModel::Overridden(|values| {
             let spreads = values.is_used(&RADIUS_SPREAD) && values.number(&RADIUS_SPREAD)? > 0.0;
             spreads.then(|| Overrides::new().set(&RADIUS_SPREAD, 0.0))
         }),
     },
     Twin {
         name: "three quarters of the stiffness",
-        becomes: Becomes::Overridden(|values| {
+        becomes: SimplifiedModel::Overridden(|values| {
             Some(Overrides::new().set(&STIFFNESS, 0.25 * values.number(&STIFFNESS)?))
         }),
     },
-    Twin { name: "softness (hard discs from collision to collision)", becomes: Becomes::Rewritten(hard) },
+    Twin {
+        name: "softness (hard discs from collision to collision)",
+        becomes: SimplifiedModel::Rewritten(hard),
+    },
 ];
 
-pub(super) const AXES: &[Axis] = &[
-    Axis {
+pub(super) const AXES: &[SettingAxis] = &[
+    SettingAxis {
         name: "integrator",
-        decides: Decides::Order,
+        decides: ChoiceEffect::Order,
         settings: settings! {
             "velocity-verlet" [INTEGRATOR = IntegratorKind::VelocityVerlet],
             "gear4" [INTEGRATOR = IntegratorKind::Gear, VALUES = 4_u64],
@@ -208,9 +211,9 @@ pub(super) const AXES: &[Axis] = &[
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
-    Axis {
+    SettingAxis {
         name: "precision",
-        decides: Decides::Digits,
+        decides: ChoiceEffect::Digits,
         settings: settings! {
             "f64" [PRECISION = Precision::F64],
             "mixed" [PRECISION = Precision::Mixed],
@@ -218,19 +221,19 @@ pub(super) const AXES: &[Axis] = &[
         },
         own: |prepared| setting_of(prepared, "precision"),
     },
-    Axis {
+    SettingAxis {
         name: "search",
-        decides: Decides::Cost,
+        decides: ChoiceEffect::Cost,
         settings: settings! {
-            "lattice" [SEARCH = By::Lattice],
-            "sectors" [SEARCH = By::Sectors],
-            "neighbor-list" [SEARCH = By::NeighborList],
+            "lattice" [SEARCH = SearchKind::Lattice],
+            "sectors" [SEARCH = SearchKind::Sectors],
+            "neighbor-list" [SEARCH = SearchKind::NeighborList],
         },
         own: |prepared| fact_of(prepared, "search"),
     },
-    Axis {
+    SettingAxis {
         name: "execution",
-        decides: Decides::Cost,
+        decides: ChoiceEffect::Cost,
         settings: settings! {
             "fast" [ENGINE = EngineChoice::Fast],
             "chained" [ENGINE = EngineChoice::Programs, EXECUTION = "chained"],
@@ -250,7 +253,7 @@ fn fact_of(prepared: &Prepared, name: &str) -> Option<String> {
     Some(fact.1.as_str()?.to_owned())
 }
 
-fn inertia(values: &Values) -> Option<f64> {
+fn inertia(values: &SceneValues) -> Option<f64> {
     let has_friction =
         [&FRICTION, &SHEAR_DAMPING].iter().all(|key| values.number(key).is_some_and(|v| v > 0.0));
     let inertia = values.choice(&INERTIA).and_then(|word| Inertia::parse(&word))?;
@@ -258,7 +261,7 @@ fn inertia(values: &Values) -> Option<f64> {
 }
 
 /// Returns the order of positions after contacts: that of the scheme, unless the law or the start reduces it.
-fn theory(values: &Values, prepared: &Prepared, integrator: &Setting) -> Option<Theory> {
+fn theory(values: &SceneValues, prepared: &Prepared, integrator: &AxisSetting) -> Option<TheoreticalOrder> {
     let is_damped = values.number(&NORMAL_DAMPING)? > 0.0;
     let scheme = match integrator.name {
         "velocity-verlet" if is_damped => (1.0, "velocities of the damping lag by half a step"),
@@ -278,13 +281,13 @@ fn theory(values: &Values, prepared: &Prepared, integrator: &Setting) -> Option<
     // Of several equal orders the first is named.
     let least =
         [Some(law), start, Some(scheme)].into_iter().flatten().reduce(|a, b| if b.0 < a.0 { b } else { a });
-    least.map(|(order, why)| Theory { order, why })
+    least.map(|(order, why)| TheoreticalOrder { order, why })
 }
 
 /// True if moving discs touch at the start; with all discs at rest the third derivatives are zero.
 fn touches(prepared: &Prepared) -> bool {
     let moves = prepared.particles().grains().iter().any(|disc| disc.velocity != [0.0; 3]);
     const CONTACTS: usize = place(QUANTITIES, "contacts");
-    let started = || prepared.start(Purpose::Measurement);
+    let started = || prepared.start(StartPurpose::Measurement);
     moves && started().is_ok_and(|simulation| simulation.observe()[CONTACTS] > 0.0)
 }

@@ -3,15 +3,15 @@
 use stripmine_kernels::sweep::all_pairs::{padded, padding};
 
 /// Quantity along three axes, with an entry for every body and padding.
-pub(crate) type Columns = [Vec<f64>; 3];
+pub(crate) type StateColumns = [Vec<f64>; 3];
 
 /// Returns columns of `entries` zeros.
-pub fn zeros(entries: usize) -> Columns {
+pub fn zeros(entries: usize) -> StateColumns {
     [0, 1, 2].map(|_| vec![0.0; entries])
 }
 
 /// Adds `factor · of` to every entry of `to`.
-pub(crate) fn add(to: &mut Columns, factor: f64, of: &Columns) {
+pub(crate) fn add(to: &mut StateColumns, factor: f64, of: &StateColumns) {
     for (to, of) in to.iter_mut().zip(of) {
         to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
     }
@@ -19,23 +19,27 @@ pub(crate) fn add(to: &mut Columns, factor: f64, of: &Columns) {
 
 /// Point masses in space, padded to whole groups by distant entries without mass.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Bodies {
+pub struct PointMasses {
     count: usize,
     /// Positions (length).
-    pub position: Columns,
+    pub position: StateColumns,
     /// Velocities (length/time).
-    pub velocity: Columns,
+    pub velocity: StateColumns,
     /// Masses.
     pub mass: Vec<f64>,
 }
 
-impl Bodies {
+impl PointMasses {
     /// Creates bodies from positions (length), velocities (length/time) and masses.
     pub fn new(bodies: impl ExactSizeIterator<Item = ([f64; 3], [f64; 3], f64)>) -> Self {
         let count = bodies.len();
         let entries = padded(count);
-        let mut made =
-            Bodies { count, position: zeros(entries), velocity: zeros(entries), mass: vec![0.0; entries] };
+        let mut made = PointMasses {
+            count,
+            position: zeros(entries),
+            velocity: zeros(entries),
+            mass: vec![0.0; entries],
+        };
         for (n, (position, velocity, mass)) in bodies.enumerate() {
             made.mass[n] = mass;
             for axis in 0..3 {

@@ -2,12 +2,12 @@
 
 use super::choice;
 use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
-use super::options::{Engine, StartKind};
-use super::scene::Scene;
-use super::starts::{Body, bodies};
+use super::options::{ForceEngine, StartKind};
+use super::scene::NbodyScene;
+use super::starts::{InitialBody, bodies};
 use crate::method::Prepared;
-use crate::particles::{Kind, Particle, Particles};
-use crate::scene::{PRECISION, Precision, Read, Reason, SceneError, SceneErrors, Values};
+use crate::particles::{Particle, ParticleKind, Particles};
+use crate::scene::{MistakeKind, PRECISION, Precision, ReadBinding, SceneError, SceneErrors, SceneValues};
 use std::collections::HashMap;
 
 /// Smallest mass ratio in single precision: products of two such masses are still normal numbers.
@@ -15,8 +15,8 @@ const LIGHTEST: f64 = 1e-18;
 
 /// Checked scene of bodies.
 #[derive(Clone)]
-pub(super) struct Checked {
-    pub(super) scene: Scene,
+pub(super) struct CheckedNbody {
+    pub(super) scene: NbodyScene,
     pub(super) particles: Particles,
     pub(super) choices: Vec<String>,
 }
@@ -25,29 +25,29 @@ pub(super) struct Checked {
 ///
 /// # Errors
 /// [`SceneErrors`] with every violated precondition.
-pub(super) fn prepare(values: Values) -> Result<Prepared, SceneErrors> {
+pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
     Ok(checked(values)?.prepared())
 }
 
 /// Checks a scene and returns the method's own representation.
-pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
-    let (mut scene, mut read) = (Scene::default(), Read::new(&values));
+pub(super) fn checked(values: SceneValues) -> Result<CheckedNbody, SceneErrors> {
+    let (mut scene, mut read) = (NbodyScene::default(), ReadBinding::new(&values));
     scene.bind(&mut read);
     read.done()?;
     let mut errors = vec![];
     if scene.precision == Precision::F32 {
         let error = values.spot(&PRECISION).error(
-            Reason::Contradiction,
+            MistakeKind::Contradiction,
             "`machine.precision` is \"f32\", but the state of bodies is in double precision",
         );
         errors.push(error.expecting("\"f64\", or \"mixed\" for forces in single precision"));
     }
-    if scene.engine == Engine::Reference && scene.precision == Precision::Mixed {
+    if scene.engine == ForceEngine::Reference && scene.precision == Precision::Mixed {
         let message = format!(
             "`machine.precision` is \"mixed\", but `{}` = \"reference\" sums in double precision only",
             ENGINE.path()
         );
-        let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
+        let error = values.spot(&PRECISION).error(MistakeKind::Contradiction, message);
         errors.push(error.expecting("\"f64\", or another engine"));
     }
     if scene.start.kind == StartKind::List {
@@ -58,7 +58,7 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     let radius = radius_shown(&scene, &of);
     let all = of.iter().zip(1..).map(|(&(mass, position, velocity), id)| Particle {
         id,
-        kind: Kind::Grain,
+        kind: ParticleKind::Grain,
         position,
         velocity,
         angle: 0.0,
@@ -75,11 +75,11 @@ pub(super) fn checked(values: Values) -> Result<Checked, SceneErrors> {
     }
     SceneErrors::none_of(errors)?;
     let choices = choice::choose(&mut scene, particles.len());
-    Ok(Checked { scene, particles, choices })
+    Ok(CheckedNbody { scene, particles, choices })
 }
 
 /// Radius for viewers, as points have none: the softening, or a hundredth of the median distance from the middle.
-fn radius_shown(scene: &Scene, bodies: &[Body]) -> f64 {
+fn radius_shown(scene: &NbodyScene, bodies: &[InitialBody]) -> f64 {
     /// Drawn radius relative to the scale of the start.
     const SMALL: f64 = 0.01;
     let mut scale = 1.0;
@@ -96,25 +96,25 @@ fn radius_shown(scene: &Scene, bodies: &[Body]) -> f64 {
 }
 
 /// Errors for fewer than two bodies, or for masses that are not positive.
-fn wrong_rows(values: &Values, scene: &Scene) -> Vec<SceneError> {
+fn wrong_rows(values: &SceneValues, scene: &NbodyScene) -> Vec<SceneError> {
     let rows = &scene.start.bodies;
     let mut errors = vec![];
     if rows.len() < 2 {
         let message =
             format!("`particles.bodies` lists {}, but one body alone has nothing to attract", rows.len());
-        errors.push(values.spot(&BODIES).error(Reason::Range, message).expecting("two bodies or more"));
+        errors.push(values.spot(&BODIES).error(MistakeKind::Range, message).expecting("two bodies or more"));
     }
     for (number, row) in rows.iter().enumerate().filter(|(_, row)| row[0] <= 0.0).take(5) {
         let message = format!("body {} has the mass {:?}", number + 1, row[0]);
         errors.push(
-            values.item_spot(&BODIES, number).error(Reason::Range, message).expecting("a mass above 0"),
+            values.item_spot(&BODIES, number).error(MistakeKind::Range, message).expecting("a mass above 0"),
         );
     }
     errors
 }
 
 /// Error for a body so light that its forces vanish in single precision.
-fn too_light(values: &Values, particles: &Particles) -> Option<SceneError> {
+fn too_light(values: &SceneValues, particles: &Particles) -> Option<SceneError> {
     let heaviest = particles.all().iter().max_by(|a, b| a.mass.total_cmp(&b.mass))?;
     let lightest = particles.all().iter().min_by(|a, b| a.mass.total_cmp(&b.mass))?;
     if lightest.mass >= LIGHTEST * heaviest.mass {
@@ -124,12 +124,12 @@ fn too_light(values: &Values, particles: &Particles) -> Option<SceneError> {
         "body {} has the mass {:?}, less than {LIGHTEST:e} times the {:?} of body {}: its forces vanish in single precision",
         lightest.id, lightest.mass, heaviest.mass, heaviest.id
     );
-    let error = values.spot(&PRECISION).error(Reason::Contradiction, message);
+    let error = values.spot(&PRECISION).error(MistakeKind::Contradiction, message);
     Some(error.expecting("machine.precision = \"f64\", or a heavier body"))
 }
 
 /// Error for two bodies at one position, whose attraction is infinite without softening.
-fn coincident(values: &Values, particles: &Particles) -> Option<SceneError> {
+fn coincident(values: &SceneValues, particles: &Particles) -> Option<SceneError> {
     let mut places: HashMap<[u64; 3], u32> = HashMap::new();
     for (number, body) in particles.all().iter().enumerate() {
         // −0 and 0 are the same position.
@@ -145,7 +145,7 @@ fn coincident(values: &Values, particles: &Particles) -> Option<SceneError> {
             } else {
                 values.spot(&GENERATE)
             };
-            let error = spot.error(Reason::Overlap, message);
+            let error = spot.error(MistakeKind::Overlap, message);
             return Some(error.advising(format!("set `{}` above 0, or move one of them", SOFTENING.path())));
         }
     }

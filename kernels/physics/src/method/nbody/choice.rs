@@ -2,8 +2,8 @@
 //!
 //! The choice depends on the scene alone, never on the machine or its threads, so runs are the same everywhere.
 
-use super::options::{ArithmeticKind, Engine};
-use super::scene::Scene;
+use super::options::{ArithmeticKind, ForceEngine};
+use super::scene::NbodyScene;
 use super::schemes::SchemeName;
 use crate::scene::Precision;
 use crate::words::Words;
@@ -13,26 +13,26 @@ use crate::words::Words;
 const FEW: usize = 12;
 
 /// Chooses the engine if the scene leaves it open. Returns the reasons, and notes on unexpectedly slow parts.
-pub(super) fn choose(scene: &mut Scene, bodies: usize) -> Vec<String> {
+pub(super) fn choose(scene: &mut NbodyScene, bodies: usize) -> Vec<String> {
     let mut said = vec![];
-    if scene.engine == Engine::Auto {
+    if scene.engine == ForceEngine::Auto {
         let is_plain = scene.precision == Precision::F64 && scene.arithmetic == ArithmeticKind::Exact;
         let (engine, reason) = match (is_plain, bodies <= FEW) {
             (false, _) => {
-                (Engine::Fast, "only this engine has single precision and estimated roots".to_owned())
+                (ForceEngine::Fast, "only this engine has single precision and estimated roots".to_owned())
             }
             (_, true) => {
-                (Engine::Reference, format!("the cheapest for {bodies} bodies, and for up to {FEW}"))
+                (ForceEngine::Reference, format!("the cheapest for {bodies} bodies, and for up to {FEW}"))
             }
             (_, false) => (
-                Engine::Fast,
+                ForceEngine::Fast,
                 format!("the cheapest for {bodies} bodies; up to {FEW}, the reference is cheaper"),
             ),
         };
         scene.engine = engine;
         said.push(format!("machine.engine = \"{}\": {reason}", engine.word()));
     }
-    if scene.scheme == SchemeName::Gear6 && scene.engine != Engine::Reference {
+    if scene.scheme == SchemeName::Gear6 && scene.engine != ForceEngine::Reference {
         said.push(format!(
             "integrator.kind = \"{}\" starts with derivatives that no sweep calculates: they are summed pair by pair in \
              double precision, once, which takes as long as some hundred steps",
@@ -49,18 +49,19 @@ mod tests {
     #[test]
     fn few_bodies_use_the_direct_sum() {
         let engine = |bodies, precision, arithmetic| {
-            let mut scene = Scene { engine: Engine::Auto, precision, arithmetic, ..Scene::default() };
+            let mut scene =
+                NbodyScene { engine: ForceEngine::Auto, precision, arithmetic, ..NbodyScene::default() };
             let said = choose(&mut scene, bodies);
             assert!(said[0].contains(scene.engine.word()), "{said:?}");
             scene.engine
         };
         use ArithmeticKind::{Estimated, Exact};
         for (bodies, precision, arithmetic, expected) in [
-            (2, Precision::F64, Exact, Engine::Reference),
-            (FEW, Precision::F64, Exact, Engine::Reference),
-            (FEW + 1, Precision::F64, Exact, Engine::Fast),
-            (2, Precision::Mixed, Exact, Engine::Fast),
-            (2, Precision::F64, Estimated, Engine::Fast),
+            (2, Precision::F64, Exact, ForceEngine::Reference),
+            (FEW, Precision::F64, Exact, ForceEngine::Reference),
+            (FEW + 1, Precision::F64, Exact, ForceEngine::Fast),
+            (2, Precision::Mixed, Exact, ForceEngine::Fast),
+            (2, Precision::F64, Estimated, ForceEngine::Fast),
         ] {
             assert_eq!(
                 engine(bodies, precision, arithmetic),
@@ -74,13 +75,13 @@ mod tests {
     #[test]
     fn slow_starts_are_reported() {
         let said = |scheme, engine| {
-            let mut scene = Scene { scheme, engine, ..Scene::default() };
+            let mut scene = NbodyScene { scheme, engine, ..NbodyScene::default() };
             let said = choose(&mut scene, 100);
             assert_eq!(scene.engine, engine);
             said
         };
-        assert!(said(SchemeName::Gear6, Engine::Fast)[0].contains("derivatives"));
-        assert!(said(SchemeName::Gear6, Engine::Reference).is_empty());
-        assert!(said(SchemeName::Hermite4, Engine::Fast).is_empty());
+        assert!(said(SchemeName::Gear6, ForceEngine::Fast)[0].contains("derivatives"));
+        assert!(said(SchemeName::Gear6, ForceEngine::Reference).is_empty());
+        assert!(said(SchemeName::Hermite4, ForceEngine::Fast).is_empty());
     }
 }

@@ -1,10 +1,10 @@
 //! Conserved quantities of the motion.
 
-use super::bodies::Bodies;
+use super::bodies::PointMasses;
 
 /// Sums over all bodies that gravity conserves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Conserved {
+pub(crate) struct ConservedQuantities {
     /// Kinetic energy.
     pub kinetic: f64,
     /// Potential energy of the softened pairs.
@@ -16,10 +16,10 @@ pub(crate) struct Conserved {
     pub centre: [f64; 3],
 }
 
-impl Conserved {
+impl ConservedQuantities {
     /// Sums the quantities of bodies with this potential energy of the pairs.
-    pub(super) fn of(bodies: &Bodies, potential: f64) -> Self {
-        let mut sums = Conserved { potential, ..Conserved::default() };
+    pub(super) fn of(bodies: &PointMasses, potential: f64) -> Self {
+        let mut sums = ConservedQuantities { potential, ..ConservedQuantities::default() };
         let mut mass = 0.0;
         for body in 0..bodies.len() {
             let (m, [x, y, z], [u, v, w]) =

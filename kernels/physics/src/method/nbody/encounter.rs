@@ -1,10 +1,10 @@
 //! Search for the nearest pair of bodies.
 
-use super::bodies::Columns;
+use super::bodies::StateColumns;
 
 /// Nearest pair of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Encounter {
+pub(super) struct NearestPair {
     /// Numbers of the bodies, the smaller first.
     pub(super) bodies: [usize; 2],
     /// Distance of the bodies (length).
@@ -16,14 +16,14 @@ pub(super) struct Encounter {
 /// Search for the nearest pair. Bodies are sorted along the axis of their widest extent, and each is compared with the bodies behind it
 /// that are closer along this axis than the nearest pair so far.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Encounters {
+pub(super) struct NearestPairSearch {
     /// Last order, which is almost the next one.
     order: Vec<u32>,
 }
 
-impl Encounters {
+impl NearestPairSearch {
     /// Returns the nearest pair of the first `count` bodies; none if no pair has a finite distance.
-    pub(super) fn nearest(&mut self, position: &Columns, count: usize) -> Option<Encounter> {
+    pub(super) fn nearest(&mut self, position: &StateColumns, count: usize) -> Option<NearestPair> {
         let spread = |column: &Vec<f64>| {
             let ends = column[..count]
                 .iter()
@@ -52,7 +52,7 @@ impl Encounters {
         }
         let (bodies, distance) = nearest?;
         let bodies = bodies.map(|body| body as usize);
-        Some(Encounter { bodies, distance, place: position.each_ref().map(|column| column[bodies[0]]) })
+        Some(NearestPair { bodies, distance, place: position.each_ref().map(|column| column[bodies[0]]) })
     }
 }
 
@@ -60,16 +60,16 @@ impl Encounters {
 mod tests {
     use super::*;
     use rand::RngExt;
-    use stripmine_kernels::noise::{Purpose, Stream};
+    use stripmine_kernels::noise::{RandomPurpose, Stream};
 
     /// Compared with all pairs, repeatedly after small moves; also for bodies on lines and planes.
     #[test]
     fn nearest_pair_matches_all_pairs() {
-        let mut random = Stream::new(3, Purpose::Test, 0);
+        let mut random = Stream::new(3, RandomPurpose::Test, 0);
         for count in [0, 1, 2, 3, 17, 200] {
             for flat in 0..4 {
-                let mut encounters = Encounters::default();
-                let mut position: Columns = std::array::from_fn(|axis| {
+                let mut encounters = NearestPairSearch::default();
+                let mut position: StateColumns = std::array::from_fn(|axis| {
                     (0..count)
                         .map(|_| if axis < flat { 1.0 } else { random.random_range(-1.0..1.0) })
                         .collect()
@@ -82,7 +82,7 @@ mod tests {
                     let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
                     let least = all.map(|(a, b)| apart(a, b)).min_by(f64::total_cmp);
                     assert_eq!(found.map(|found| found.distance), least);
-                    if let Some(Encounter { bodies: [a, b], distance, .. }) = found {
+                    if let Some(NearestPair { bodies: [a, b], distance, .. }) = found {
                         assert!(a < b && apart(a, b) == distance);
                     }
                     for x in position[2].iter_mut() {
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn nan_positions_are_ignored() {
         let position = [vec![0.0, f64::NAN, 3.0, 4.0], vec![0.0; 4], vec![0.0; 4]];
-        let found = Encounters::default().nearest(&position, 4).unwrap();
+        let found = NearestPairSearch::default().nearest(&position, 4).unwrap();
         assert_eq!((found.bodies, found.distance), ([2, 3], 1.0));
     }
 }

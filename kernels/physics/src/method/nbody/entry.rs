@@ -5,10 +5,10 @@ use super::checked::prepare;
 use super::keys::VOCABULARY;
 use super::quantities::QUANTITIES;
 use super::trials::{AXES, TRIALS, TWINS};
-use crate::method::Entry;
+use crate::method::MethodEntry;
 
 /// All-pairs gravity.
-pub static ENTRY: Entry = Entry {
+pub static ENTRY: MethodEntry = MethodEntry {
     vocabulary: &VOCABULARY,
     source: "all-pairs gravity (PWP)",
     doc: "bodies in space with softened all-pairs gravity, by ten integrators",

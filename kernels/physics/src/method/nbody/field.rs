@@ -1,15 +1,15 @@
 //! Accelerations of bodies, by interchangeable implementations of the same sums.
 
-use super::bodies::{Bodies, Columns};
-use super::options::{ArithmeticKind, Engine};
+use super::bodies::{PointMasses, StateColumns};
+use super::options::{ArithmeticKind, ForceEngine};
 use super::ranked::summed;
-use super::scene::Scene;
-use super::schemes::{Field, SchemeName};
-use super::shifted::Shifted;
-use super::sums::{Stop, Sums, go_on};
+use super::scene::NbodyScene;
+use super::schemes::{AccelerationField, SchemeName};
+use super::shifted::ShiftedPrograms;
+use super::sums::{ForceSums, StopCallback, go_on};
 pub use super::sums::{never, potential};
-use super::swept::Swept;
-use crate::method::{Failure, refuse_several_ranks};
+use super::swept::PairSweep;
+use crate::method::{PhysicsFailure, refuse_several_ranks};
 use crate::ranks::RankError;
 use crate::scene::Precision;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -20,7 +20,7 @@ use stripmine_kernels::sweep::all_pairs::Arithmetic;
 const ORDERS: usize = 4;
 
 /// Gravitational field of the bodies.
-pub struct Attraction {
+pub struct GravityField {
     softening: f64,
     constant: f64,
     mass: Vec<f64>,
@@ -29,36 +29,36 @@ pub struct Attraction {
     /// G/m: converts sums of m₁ m₂ d/d³ to accelerations; 0 for padding without mass.
     per_mass: Vec<f64>,
     bodies: usize,
-    pub(super) pairs: Pairs,
+    pub(super) pairs: PairSummation,
     /// Number of evaluations of the accelerations.
     pub evaluations: u64,
 }
 
 /// Implementations of the pair sums.
-pub(crate) enum Pairs {
+pub(crate) enum PairSummation {
     /// Direct sum.
     Reference,
     /// Force sums in the scene's precision.
-    Summed(Box<dyn Sums>),
+    Summed(Box<dyn ForceSums>),
 }
 
 /// Field during one step of a scheme.
-pub struct Asking<'a> {
-    attraction: &'a mut Attraction,
+pub struct StepField<'a> {
+    attraction: &'a mut GravityField,
     /// True if the energy at the end of the step is needed.
     observed: bool,
     /// Energy at the end of the step, if it was summed with the forces.
     energy: Option<f64>,
-    stop: Stop<'a>,
+    stop: StopCallback<'a>,
 }
 
-impl Attraction {
+impl GravityField {
     /// Creates the field of a scene's bodies, on the current number of ranks.
     ///
     /// # Errors
     /// [`Failure`] if the bodies cannot be distributed to the number of ranks.
-    pub fn new(scene: &Scene, bodies: &Bodies) -> Result<Self, Failure> {
-        if !matches!(scene.engine, Engine::Fast | Engine::Auto) {
+    pub fn new(scene: &NbodyScene, bodies: &PointMasses) -> Result<Self, PhysicsFailure> {
+        if !matches!(scene.engine, ForceEngine::Fast | ForceEngine::Auto) {
             refuse_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
         }
         let arithmetic = match scene.arithmetic {
@@ -69,22 +69,24 @@ impl Attraction {
         let set = scene.instructions();
         let (softening, execution) = (scene.softening, (scene.execution, set));
         let pairs = match (scene.engine, scene.precision) {
-            (Engine::Reference, _) => Pairs::Reference,
+            (ForceEngine::Reference, _) => PairSummation::Reference,
             // The check has resolved `auto`.
-            (Engine::Fast | Engine::Auto, Precision::F64) => {
-                Pairs::Summed(summed::<f64>(scene, bodies, arithmetic)?)
+            (ForceEngine::Fast | ForceEngine::Auto, Precision::F64) => {
+                PairSummation::Summed(summed::<f64>(scene, bodies, arithmetic)?)
             }
-            (Engine::Fast | Engine::Auto, _) => Pairs::Summed(summed::<f32>(scene, bodies, arithmetic)?),
-            (Engine::Programs, Precision::F64) => {
-                Pairs::Summed(Box::new(Shifted::<f64>::new(softening, bodies, execution)))
+            (ForceEngine::Fast | ForceEngine::Auto, _) => {
+                PairSummation::Summed(summed::<f32>(scene, bodies, arithmetic)?)
             }
-            (Engine::Programs, _) => {
-                Pairs::Summed(Box::new(Shifted::<f32>::new(softening, bodies, execution)))
+            (ForceEngine::Programs, Precision::F64) => {
+                PairSummation::Summed(Box::new(ShiftedPrograms::<f64>::new(softening, bodies, execution)))
+            }
+            (ForceEngine::Programs, _) => {
+                PairSummation::Summed(Box::new(ShiftedPrograms::<f32>::new(softening, bodies, execution)))
             }
         };
         let constant = scene.gravitational_constant;
         let per_mass = bodies.mass.iter().map(|&m| if m > 0.0 { constant / m } else { 0.0 }).collect();
-        Ok(Attraction {
+        Ok(GravityField {
             softening: scene.softening,
             constant,
             mass: bodies.mass.clone(),
@@ -97,14 +99,16 @@ impl Attraction {
     }
 
     /// Memory of the field of a scene with `count` bodies, in bytes.
-    pub fn bytes(scene: &Scene, count: usize) -> usize {
+    pub fn bytes(scene: &NbodyScene, count: usize) -> usize {
         let has_rates = scene.scheme == SchemeName::Hermite4;
         let pairs = match (scene.engine, scene.precision) {
-            (Engine::Reference, _) => 0,
-            (Engine::Fast | Engine::Auto, Precision::F64) => Swept::<f64>::bytes(count, has_rates),
-            (Engine::Fast | Engine::Auto, _) => Swept::<f32>::bytes(count, has_rates),
-            (Engine::Programs, Precision::F64) => Shifted::<f64>::bytes(count, has_rates),
-            (Engine::Programs, _) => Shifted::<f32>::bytes(count, has_rates),
+            (ForceEngine::Reference, _) => 0,
+            (ForceEngine::Fast | ForceEngine::Auto, Precision::F64) => {
+                PairSweep::<f64>::bytes(count, has_rates)
+            }
+            (ForceEngine::Fast | ForceEngine::Auto, _) => PairSweep::<f32>::bytes(count, has_rates),
+            (ForceEngine::Programs, Precision::F64) => ShiftedPrograms::<f64>::bytes(count, has_rates),
+            (ForceEngine::Programs, _) => ShiftedPrograms::<f32>::bytes(count, has_rates),
         };
         pairs + 3 * size_of::<f64>() * count
     }
@@ -112,35 +116,44 @@ impl Attraction {
     /// Returns the lost rank, if any.
     pub fn lost(&self) -> Option<RankError> {
         match &self.pairs {
-            Pairs::Reference => None,
-            Pairs::Summed(sums) => sums.lost(),
+            PairSummation::Reference => None,
+            PairSummation::Summed(sums) => sums.lost(),
         }
     }
 
     /// Returns the field for one step; `observed` requests the energy at its end, `stop` may interrupt it.
-    pub fn asking<'a>(&'a mut self, observed: bool, stop: Stop<'a>) -> Asking<'a> {
-        Asking { attraction: self, observed, energy: None, stop }
+    pub fn asking<'a>(&'a mut self, observed: bool, stop: StopCallback<'a>) -> StepField<'a> {
+        StepField { attraction: self, observed, energy: None, stop }
     }
 
     /// Energy of all pairs.
     ///
     /// # Errors
     /// [`ProgramError`] if the processor lacks the instruction set, or `stop` returns true.
-    pub fn potential(&mut self, position: &Columns, stop: Stop<'_>) -> Result<f64, ProgramError> {
+    pub fn potential(
+        &mut self,
+        position: &StateColumns,
+        stop: StopCallback<'_>,
+    ) -> Result<f64, ProgramError> {
         let energy = match &mut self.pairs {
-            Pairs::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
-            Pairs::Summed(sums) => sums.sum(position, None, true, stop),
+            PairSummation::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
+            PairSummation::Summed(sums) => sums.sum(position, None, true, stop),
         };
         energy.map(|energy| self.constant * energy)
     }
 
-    fn square(&self, position: &Columns, body: usize, other: usize) -> f64 {
+    fn square(&self, position: &StateColumns, body: usize, other: usize) -> f64 {
         let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
         squares.sum::<f64>() + self.softening * self.softening
     }
 
     /// Direct sum in the order of the bodies.
-    fn written(&self, position: &Columns, into: &mut Columns, stop: Stop<'_>) -> Result<(), ProgramError> {
+    fn written(
+        &self,
+        position: &StateColumns,
+        into: &mut StateColumns,
+        stop: StopCallback<'_>,
+    ) -> Result<(), ProgramError> {
         for body in 0..self.bodies {
             go_on(stop)?;
             let mut sum = [0.0; 3];
@@ -158,10 +171,10 @@ impl Attraction {
     /// are independent and run on threads.
     fn series(
         &self,
-        position: &Columns,
-        velocity: &Columns,
-        orders: &mut [Columns],
-        stop: Stop<'_>,
+        position: &StateColumns,
+        velocity: &StateColumns,
+        orders: &mut [StateColumns],
+        stop: StopCallback<'_>,
     ) -> Result<(), ProgramError> {
         let count = self.bodies;
         // Taylor coefficients of every position.
@@ -225,24 +238,25 @@ fn power(of: &[f64; ORDERS], exponent: f64, order: usize) -> [f64; ORDERS] {
     result
 }
 
-impl Asking<'_> {
+impl StepField<'_> {
     /// Energy of all pairs at the positions at the end of the step.
     ///
     /// # Errors
     /// As [`Attraction::potential`].
-    pub fn energy(&mut self, position: &Columns) -> Result<f64, ProgramError> {
+    pub fn energy(&mut self, position: &StateColumns) -> Result<f64, ProgramError> {
         self.energy.take().map_or_else(|| self.attraction.potential(position, self.stop), Ok)
     }
 
     fn acceleration_and(
         &mut self,
-        position: &Columns,
-        into: &mut Columns,
+        position: &StateColumns,
+        into: &mut StateColumns,
         observed: bool,
     ) -> Result<Option<f64>, ProgramError> {
-        let Asking { attraction, stop, .. } = self;
+        let StepField { attraction, stop, .. } = self;
         attraction.evaluations += 1;
-        let Attraction { pairs: Pairs::Summed(sums), per_mass, constant, .. } = &mut **attraction else {
+        let GravityField { pairs: PairSummation::Summed(sums), per_mass, constant, .. } = &mut **attraction
+        else {
             return attraction.written(position, into, stop).map(|()| None);
         };
         let energy = sums.sum(position, None, observed, stop)?;
@@ -251,26 +265,30 @@ impl Asking<'_> {
     }
 }
 
-impl Field for Asking<'_> {
-    fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+impl AccelerationField for StepField<'_> {
+    fn acceleration(&mut self, position: &StateColumns, into: &mut StateColumns) -> Result<(), ProgramError> {
         self.acceleration_and(position, into, false).map(drop)
     }
 
-    fn last_acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+    fn last_acceleration(
+        &mut self,
+        position: &StateColumns,
+        into: &mut StateColumns,
+    ) -> Result<(), ProgramError> {
         self.energy = self.acceleration_and(position, into, self.observed)?;
         Ok(())
     }
 
     fn derivatives(
         &mut self,
-        position: &Columns,
-        velocity: &Columns,
-        orders: &mut [Columns],
+        position: &StateColumns,
+        velocity: &StateColumns,
+        orders: &mut [StateColumns],
     ) -> Result<(), ProgramError> {
-        let Asking { attraction, stop, .. } = self;
+        let StepField { attraction, stop, .. } = self;
         attraction.evaluations += 1;
         match (&mut **attraction, orders) {
-            (Attraction { pairs: Pairs::Summed(sums), per_mass, .. }, [acceleration, jerk]) => {
+            (GravityField { pairs: PairSummation::Summed(sums), per_mass, .. }, [acceleration, jerk]) => {
                 sums.sum(position, Some(velocity), false, stop)?;
                 sums.over(per_mass, [Some(acceleration), Some(jerk)]);
                 Ok(())
@@ -283,7 +301,7 @@ impl Field for Asking<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::options::StartKind;
-    use super::super::schemes::Field as _;
+    use super::super::schemes::AccelerationField as _;
     use super::super::starts::bodies;
     use super::*;
     use crate::method::nbody::bodies::zeros;
@@ -292,12 +310,12 @@ mod tests {
     /// The series derivatives match finite differences of the acceleration along the path, and the sweep's jerk.
     #[test]
     fn derivatives_match_the_motion() {
-        let mut scene = Scene { softening: 0.2, gravitational_constant: 3.7, ..Scene::default() };
+        let mut scene = NbodyScene { softening: 0.2, gravitational_constant: 3.7, ..NbodyScene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
         let of = bodies(&scene.start, 0.2, 1.0);
-        let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
-        let mut field = Attraction::new(&scene, &all).unwrap();
-        let mut orders: Vec<Columns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
+        let all = PointMasses::new(of.iter().map(|&(m, r, v)| (r, v, m)));
+        let mut field = GravityField::new(&scene, &all).unwrap();
+        let mut orders: Vec<StateColumns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
         // Along the Taylor path the acceleration has these derivatives.
         let h = 0.004;
@@ -320,11 +338,12 @@ mod tests {
             field.asking(false, &never).acceleration(&at(time), &mut into).unwrap();
             into
         };
-        let seen: Vec<Columns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
+        let seen: Vec<StateColumns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
         let mut fast = [zeros(all.entries()), zeros(all.entries())];
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut fast).unwrap();
         let mut programs = [zeros(all.entries()), zeros(all.entries())];
-        let mut field = Attraction::new(&Scene { engine: Engine::Programs, ..scene.clone() }, &all).unwrap();
+        let mut field =
+            GravityField::new(&NbodyScene { engine: ForceEngine::Programs, ..scene.clone() }, &all).unwrap();
         field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut programs).unwrap();
         for axis in 0..3 {
             for body in 0..all.len() {
@@ -353,19 +372,19 @@ mod tests {
     /// The reference and all other engines agree within their precision.
     #[test]
     fn force_engines_agree() {
-        let mut scene = Scene { softening: 0.05, gravitational_constant: 0.31, ..Scene::default() };
+        let mut scene = NbodyScene { softening: 0.05, gravitational_constant: 0.31, ..NbodyScene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
         let of = bodies(&scene.start, 0.05, 1.0);
-        let all = Bodies::new(of.iter().map(|&(m, r, v)| (r, v, m)));
+        let all = PointMasses::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let found = |engine, execution, precision, arithmetic| {
-            let scene = Scene { engine, execution, precision, arithmetic, ..scene.clone() };
-            let mut field = Attraction::new(&scene, &all).unwrap();
+            let scene = NbodyScene { engine, execution, precision, arithmetic, ..scene.clone() };
+            let mut field = GravityField::new(&scene, &all).unwrap();
             let mut into = zeros(all.entries());
             field.asking(false, &never).acceleration(&all.position, &mut into).unwrap();
             (into, field.potential(&all.position, &never).unwrap())
         };
         let (expected, potential) =
-            found(Engine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);
+            found(ForceEngine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);
         let largest = expected.iter().flatten().fold(0.0, |most: f64, a| most.max(a.abs()));
         for (precision, arithmetic, tolerance) in [
             (Precision::F64, ArithmeticKind::Exact, 1e-14),
@@ -373,7 +392,7 @@ mod tests {
             (Precision::Mixed, ArithmeticKind::Exact, 3e-6),
             (Precision::Mixed, ArithmeticKind::Estimated, 3e-6),
         ] {
-            for engine in [Engine::Fast, Engine::Programs] {
+            for engine in [ForceEngine::Fast, ForceEngine::Programs] {
                 let (into, energy) = found(engine, Execution::Chained, precision, arithmetic);
                 for (a, b) in into.iter().zip(&expected) {
                     assert!(
@@ -384,7 +403,7 @@ mod tests {
             }
         }
         // The programs give the same bits in every execution.
-        let by = |execution| found(Engine::Programs, execution, Precision::F64, ArithmeticKind::Exact);
+        let by = |execution| found(ForceEngine::Programs, execution, Precision::F64, ArithmeticKind::Exact);
         let chained = by(Execution::Chained);
         assert!([Execution::Eager, Execution::Strip(64)].into_iter().all(|other| by(other) == chained));
     }

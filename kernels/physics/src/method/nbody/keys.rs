@@ -1,15 +1,15 @@
 //! Keys of this method, and their constraints on each other.
 
-use super::options::{ArithmeticKind, Engine, StartKind};
+use super::options::{ArithmeticKind, ForceEngine, StartKind};
 use super::schemes::SchemeName;
 use crate::io::FORMATS;
-use crate::scene::Bounds::{AtMost, Finite, NonNegative, Positive, UpTo};
 use crate::scene::Fallback::{Is, Otherwise, Required};
-use crate::scene::Kind::{Choice, Number, Rows, Whole};
+use crate::scene::KeyValueKind::{Choice, Number, Rows, Whole};
+use crate::scene::NumberRange::{AtMost, Finite, NonNegative, Positive, UpTo};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DURATION, HEADING, INSTRUCTIONS, KeySet, OUTPUT, Reason, STEP, STEPPED_RUN, SceneError,
-    TARGETED, Use, Value, Values, Vocabulary, too_many_steps,
+    ARITHMETIC, DURATION, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT, STEP, STEPPED_RUN,
+    SceneError, SceneValues, TARGETED, Use, Vocabulary, too_many_steps,
 };
 use crate::words::Words;
 
@@ -59,7 +59,7 @@ define_keys! {
     DAMPING = "integrator" "damping", Number(AtMost(1.0)), "", Is("1.0"), DAMPED,
         "Factor of the velocities at every step: a friction −ln(damping)/dt.";
 
-    ENGINE = "machine" "engine", Choice(Engine::WORDS), "", Is("\"auto\""), ALWAYS,
+    ENGINE = "machine" "engine", Choice(ForceEngine::WORDS), "", Is("\"auto\""), ALWAYS,
         "Force engine: fast visits each pair once; programs uses whole-array operations at every cyclic shift; reference is the direct sum, in double precision. auto takes reference for up to a dozen bodies, and fast for more bodies, single precision or estimated roots.";
     EXECUTION = "machine" "execution", Choice(&["chained", "eager", "strip:N"]), "", Is("\"chained\""), PROGRAMS,
         "Execution of programs: chained, register by register; eager, one pass over all bodies per instruction; or strip:N, in strips of N. All give the same bits.";
@@ -102,14 +102,15 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
 };
 
 /// Checks the keys that depend on each other.
-fn own_rules(values: &Values) -> Vec<SceneError> {
+fn own_rules(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = vec![];
     let of_boxes = FORMATS.iter().zip(OUTPUT).filter(|(format, _)| format.needs_box);
     for key in of_boxes.map(|(_, key)| key) {
-        if values.value(key) == Some(Value::Switch(true)) {
-            let error = values
-                .spot(key)
-                .error(Reason::Contradiction, format!("`{}` needs a box, but bodies have none", key.path()));
+        if values.value(key) == Some(KeyValue::Switch(true)) {
+            let error = values.spot(key).error(
+                MistakeKind::Contradiction,
+                format!("`{}` needs a box, but bodies have none", key.path()),
+            );
             errors.push(error.advising(format!("remove it: {} has the same data", FORMATS[0].file)));
         }
     }

@@ -24,7 +24,7 @@ define_words! {
 
 define_words! {
     /// Engine that calculates the forces.
-    pub enum Engine {
+    pub enum ForceEngine {
         /// The cheapest engine for the number of bodies.
         Auto = "auto",
         /// Sweep that visits each pair once, in registers and on threads.

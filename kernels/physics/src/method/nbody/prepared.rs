@@ -1,23 +1,24 @@
 //! Prepared scene of bodies: facts, step limits, memory forecast, settings and the start of a simulation.
 
-use super::checked::Checked;
-use super::field::Attraction;
+use super::checked::CheckedNbody;
+use super::field::GravityField;
 use super::options::StartKind;
 use super::scene::constant_of;
 use super::shifted::counted;
 use super::simulation;
 use super::starts::ORBIT;
-use crate::domain::{Domain, Side};
-use crate::memory::{Foreseen, OfRanks, PROGRAM, available};
+use crate::domain::{BoxSide, Domain};
+use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
 use crate::method::{
-    Beyond, Fact, Failure, Prepared, Purpose, Schedule, Simulation, Startable, StepLimit, VectorProgram,
+    Fact, LimitConsequence, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable,
+    StepLimit, VectorProgram,
 };
 use crate::particles::{Particle, Particles};
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 
-impl Checked {
+impl CheckedNbody {
     /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let scene = &self.scene;
@@ -26,7 +27,7 @@ impl Checked {
             schedule: Schedule::of_steps(&scene.run),
             target: scene.run.target.clone(),
             output: scene.output.clone(),
-            domain: Domain { origin: [0.0; 3], sides: [Side::Open; 3] },
+            domain: Domain { origin: [0.0; 3], sides: [BoxSide::Open; 3] },
             seed: scene.start.is_drawn().then_some(scene.start.seed),
             start_file: None,
             facts: self.facts(),
@@ -80,7 +81,7 @@ impl Checked {
                     step,
                     share: scene.dt / step,
                     warned_beyond: 2.0,
-                    beyond: Beyond::Inaccurate,
+                    beyond: LimitConsequence::Inaccurate,
                     why,
                 }]
             }
@@ -96,7 +97,7 @@ impl Checked {
                     step,
                     share: scene.dt / step,
                     warned_beyond: 1.0,
-                    beyond: Beyond::Inaccurate,
+                    beyond: LimitConsequence::Inaccurate,
                     why,
                 }]
             }
@@ -104,21 +105,22 @@ impl Checked {
         }
     }
 
-    fn memory(&self) -> Foreseen {
+    fn memory(&self) -> MemoryForecast {
         let count = self.particles.len();
         let [held, carried] = self.scene.scheme.held();
         // Positions, velocities and masses, and the state before a step; the quantities of the scheme; scratch for the half-mass radius and the
         // nearest pair. Particles of the scene, of the run, and of two frames.
         let columns = 24 * (2 + 2 + held + carried) + 8 + 3 * 16 + 4;
         let particles = 4 * size_of::<Particle>();
-        let needed = PROGRAM + (count * (columns + particles) + Attraction::bytes(&self.scene, count)) as f64;
-        Foreseen {
+        let needed =
+            PROGRAM + (count * (columns + particles) + GravityField::bytes(&self.scene, count)) as f64;
+        MemoryForecast {
             needed: needed as u64,
             available: available(),
             what: format!("{count} bodies"),
             remedy: "use fewer bodies",
             // Every rank has all bodies.
-            ranks: OfRanks { each: needed - PROGRAM, ..OfRanks::default() },
+            ranks: RankMemory { each: needed - PROGRAM, ..RankMemory::default() },
         }
     }
 
@@ -135,7 +137,7 @@ impl Checked {
     }
 }
 
-impl Startable for Checked {
+impl Startable for CheckedNbody {
     fn particles(&self) -> &Particles {
         &self.particles
     }
@@ -144,11 +146,11 @@ impl Startable for Checked {
         counted(self.scene.softening, self.particles.len())
     }
 
-    fn start(&self, purpose: Purpose) -> Result<Box<dyn Simulation>, Failure> {
+    fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         Ok(Box::new(simulation::begin(self, purpose)?))
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {
-        Checked { particles, ..self.clone() }.prepared()
+        CheckedNbody { particles, ..self.clone() }.prepared()
     }
 }

@@ -1,21 +1,21 @@
 //! Observables of bodies: one list of quantities, each with its definition.
 
-use super::conserved::Conserved;
-use crate::method::Kind::{Instant, Kept, Time};
+use super::conserved::ConservedQuantities;
+use crate::method::QuantityKind::{Instant, Kept, Time};
 use crate::method::observed::observables;
-use crate::method::{Observable, Quantity, quantities};
+use crate::method::{MethodObservable, ObservedQuantity, quantities};
 
 /// Observation of the system at a moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct NbodyObservation {
     pub(super) time: f64,
-    pub(super) conserved: Conserved,
+    pub(super) conserved: ConservedQuantities,
     pub(super) energy_error: f64,
     pub(super) balance_error: f64,
     pub(super) half_mass_radius: f64,
 }
 
-impl Seen {
+impl NbodyObservation {
     /// Ratio of kinetic energy to the magnitude of the potential energy, which is never 0.
     pub(super) fn virial_ratio(&self) -> f64 {
         self.conserved.kinetic / self.conserved.potential.abs()
@@ -32,7 +32,7 @@ fn length(v: [f64; 3]) -> f64 {
 }
 
 /// Observables, in the order of the columns.
-pub(super) const OBSERVABLES: [Observable<Seen>; 12] = observables! {
+pub(super) const OBSERVABLES: [MethodObservable<NbodyObservation>; 12] = observables! {
     "time", "time", Time, |seen| seen.time, "Time.";
     "kinetic", "energy", Instant, |seen| seen.conserved.kinetic, "Kinetic energy.";
     "potential", "energy", Instant, |seen| seen.conserved.potential, "Potential energy of the softened pairs.";
@@ -48,4 +48,4 @@ pub(super) const OBSERVABLES: [Observable<Seen>; 12] = observables! {
 };
 
 /// Names, units and meanings of the observables.
-pub(super) const QUANTITIES: &[Quantity] = &quantities(&OBSERVABLES);
+pub(super) const QUANTITIES: &[ObservedQuantity] = &quantities(&OBSERVABLES);

@@ -3,12 +3,12 @@
 //! Every rank has all bodies. The first rank broadcasts their positions and adds up the sums of the bands in order, so the bits are those of one
 //! rank. Communication grows with the number of bodies, computation with its square.
 
-use super::bodies::{Bodies, Columns};
-use super::scene::Scene;
-use super::sums::{Stop, Sums, never};
-use super::swept::Swept;
-use crate::method::{Clock, DISMISSED, Failure, FailureKind, ended};
-use crate::ranks::{self, Crew, Parcel, RankError, Ranks, local, numbers};
+use super::bodies::{PointMasses, StateColumns};
+use super::scene::NbodyScene;
+use super::sums::{ForceSums, StopCallback, never};
+use super::swept::PairSweep;
+use crate::method::{Clock, DISMISSED, FailureKind, PhysicsFailure, ended};
+use crate::ranks::{self, Parcel, RankBackend, RankError, Ranks, local, numbers};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
@@ -25,12 +25,12 @@ const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 /// # Errors
 /// [`Failure`] if there are more ranks than bands. In a process that is not the first rank, the failure reports its dismissal.
 pub(super) fn summed<P: Precision>(
-    scene: &Scene,
-    bodies: &Bodies,
+    scene: &NbodyScene,
+    bodies: &PointMasses,
     arithmetic: Arithmetic,
-) -> Result<Box<dyn Sums>, Failure> {
+) -> Result<Box<dyn ForceSums>, PhysicsFailure> {
     let set = scene.instructions();
-    let swept = || Swept::<P>::new(scene.softening, bodies, arithmetic, set);
+    let swept = || PairSweep::<P>::new(scene.softening, bodies, arithmetic, set);
     let crew = ranks::crew();
     let (own, count) = (swept(), crew.count());
     if count == 1 {
@@ -39,24 +39,28 @@ pub(super) fn summed<P: Precision>(
     let bands = own.bands();
     if count > bands {
         let what = format!("{count} ranks are more than the {bands} bands of rows of the all-pairs sum");
-        return Err(Failure::new(TOO_MANY, what, format!("use at most {bands} ranks, or more bodies")));
+        return Err(PhysicsFailure::new(
+            TOO_MANY,
+            what,
+            format!("use at most {bands} ranks, or more bodies"),
+        ));
     }
     let (ranks, threads): (Box<dyn Ranks>, Vec<JoinHandle<()>>) = match crew {
-        Crew::Processes(join) => {
+        RankBackend::Processes(join) => {
             let ranks = join();
             if ranks.rank() > 0 {
                 return Err(match serve(ranks.as_ref(), own, false) {
-                    Ok(()) => Failure::new(DISMISSED, "this rank is dismissed", ""),
+                    Ok(()) => PhysicsFailure::new(DISMISSED, "this rank is dismissed", ""),
                     Err(lost) => ended(lost, Clock::default()),
                 });
             }
             (ranks, vec![])
         }
-        Crew::One | Crew::Threads(_) => {
+        RankBackend::One | RankBackend::Threads(_) => {
             let per_rank = rayon::current_num_threads();
             let mut rest = local::ranks(count, per_rank);
             let first: Box<dyn Ranks> = Box::new(rest.remove(0));
-            let begin = |ranks: local::Local| {
+            let begin = |ranks: local::ThreadRank| {
                 let own = swept();
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(per_rank).build();
                 let pool = pool.map_err(|error| error.to_string())?;
@@ -68,7 +72,7 @@ pub(super) fn summed<P: Precision>(
             let threads: Result<Vec<_>, String> = rest.into_iter().map(begin).collect();
             let threads = threads.map_err(|error| {
                 let what = format!("cannot start a thread for a rank: {error}");
-                Failure::new(TOO_MANY, what, "use fewer ranks or --threads")
+                PhysicsFailure::new(TOO_MANY, what, "use fewer ranks or --threads")
             });
             (first, threads?)
         }
@@ -84,13 +88,13 @@ fn bands_of(rank: usize, ranks: usize, bands: usize) -> Range<usize> {
 struct RankedSums<P> {
     /// Ranks, or the rank that was lost first.
     ranks: Mutex<Result<Box<dyn Ranks>, RankError>>,
-    own: Swept<P>,
+    own: PairSweep<P>,
     threads: Vec<JoinHandle<()>>,
 }
 
 /// Command of the first rank to the others, sent in an option: none if no simulation follows ([`ranks::dismiss`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum Order {
+enum RankCommand {
     /// Calculate sums.
     Sum { observed: bool, position: Parcel, velocity: Option<Parcel> },
     /// End of this simulation.
@@ -98,14 +102,14 @@ enum Order {
 }
 
 /// Serves the first rank: a thread until this simulation ends, a process until no other follows.
-fn serve<P: Precision>(ranks: &dyn Ranks, mut own: Swept<P>, is_thread: bool) -> Result<(), RankError> {
+fn serve<P: Precision>(ranks: &dyn Ranks, mut own: PairSweep<P>, is_thread: bool) -> Result<(), RankError> {
     loop {
         let answer = match ranks.tell_message(None) {
-            Ok(Some(Order::Sum { observed, position, velocity })) => {
+            Ok(Some(RankCommand::Sum { observed, position, velocity })) => {
                 band_sums(ranks, &mut own, observed, (&position, velocity.as_ref()))
             }
-            Ok(Some(Order::End)) if !is_thread => continue,
-            Ok(Some(Order::End) | None) => return Ok(()),
+            Ok(Some(RankCommand::End)) if !is_thread => continue,
+            Ok(Some(RankCommand::End) | None) => return Ok(()),
             Err(lost) => Err(lost),
         };
         ranks.gather(answer.as_ref().map_or_else(|lost| Parcel::lost(*lost), Parcel::of))?;
@@ -116,12 +120,12 @@ fn serve<P: Precision>(ranks: &dyn Ranks, mut own: Swept<P>, is_thread: bool) ->
 /// Sums of each band of a rank.
 fn band_sums<P: Precision>(
     ranks: &dyn Ranks,
-    own: &mut Swept<P>,
+    own: &mut PairSweep<P>,
     observed: bool,
     (position, velocity): (&Parcel, Option<&Parcel>),
 ) -> Result<Vec<Parcel>, RankError> {
     let entries = own.entries();
-    let columns = |parcel: &Parcel| -> Result<Columns, RankError> {
+    let columns = |parcel: &Parcel| -> Result<StateColumns, RankError> {
         let mut numbers = numbers(&parcel.0, 0, 3 * entries)?;
         Ok([(); 3].map(|()| numbers.by_ref().take(entries).collect()))
     };
@@ -137,15 +141,15 @@ impl<P: Precision> RankedSums<P> {
     /// Visits the pairs of all ranks and collects the sums of the other ranks.
     fn met(
         &mut self,
-        (position, velocity): (&Columns, Option<&Columns>),
+        (position, velocity): (&StateColumns, Option<&StateColumns>),
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<Result<(), ProgramError>, RankError> {
         let ranks = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner);
         let ranks = ranks.as_ref().map_err(|lost| *lost)?;
-        let sent = |columns: &Columns| Parcel::of_numbers(columns.iter().flatten().copied());
+        let sent = |columns: &StateColumns| Parcel::of_numbers(columns.iter().flatten().copied());
         let (from, rates) = (sent(position), velocity.map(sent));
-        ranks.tell_message(Some(Some(Order::Sum { observed, position: from, velocity: rates })))?;
+        ranks.tell_message(Some(Some(RankCommand::Sum { observed, position: from, velocity: rates })))?;
         let (count, bands, has_rates) = (ranks.count(), self.own.bands(), velocity.is_some());
         let met = self.own.meet((position, velocity), bands_of(0, count, bands), observed, stop);
         let all = ranks.gather(Parcel::default())?;
@@ -166,13 +170,13 @@ impl<P: Precision> RankedSums<P> {
     }
 }
 
-impl<P: Precision> Sums for RankedSums<P> {
+impl<P: Precision> ForceSums for RankedSums<P> {
     fn sum(
         &mut self,
-        position: &Columns,
-        velocity: Option<&Columns>,
+        position: &StateColumns,
+        velocity: Option<&StateColumns>,
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
         match self.met((position, velocity), observed, stop) {
             Ok(met) => {
@@ -187,7 +191,7 @@ impl<P: Precision> Sums for RankedSums<P> {
         }
     }
 
-    fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]) {
+    fn over(&self, per_mass: &[f64], into: [Option<&mut StateColumns>; 2]) {
         self.own.over(per_mass, into);
     }
 
@@ -200,7 +204,7 @@ impl<P> Drop for RankedSums<P> {
     fn drop(&mut self) {
         if let Ok(ranks) = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner) {
             #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
-            let _ = ranks.tell_message(Some(Some(Order::End)));
+            let _ = ranks.tell_message(Some(Some(RankCommand::End)));
         }
         self.threads.drain(..).for_each(|thread| _ = thread.join());
     }

@@ -1,6 +1,6 @@
 //! Bodies in the precision of a sweep. In single precision they are relative to their centre and in scaled units.
 
-use super::bodies::{Bodies, Columns};
+use super::bodies::{PointMasses, StateColumns};
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::sweep::all_pairs::{self, is_split, padding};
 
@@ -10,18 +10,18 @@ const FAR: f64 = 1024.0;
 
 /// Units of a sweep: powers of two, so that scaling is exact; 1 in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Units {
+pub(super) struct SweepUnits {
     length: f64,
     mass: f64,
 }
 
-impl Units {
+impl SweepUnits {
     /// Chooses the units. In single precision the heaviest body has a mass of 1 to 2, and the root mean square distance from the mean is
     /// 1 to 2: products of masses and cubes of distances then neither underflow nor overflow. If a few bodies are far away, the
     /// median distance is used instead.
-    fn of<P: Precision>(bodies: &Bodies) -> Units {
+    fn of<P: Precision>(bodies: &PointMasses) -> SweepUnits {
         if P::BYTES == size_of::<f64>() {
-            return Units { length: 1.0, mass: 1.0 };
+            return SweepUnits { length: 1.0, mass: 1.0 };
         }
         let (position, count) = (&bodies.position, bodies.len());
         let heaviest = bodies.mass[..count].iter().copied().fold(0.0, f64::max);
@@ -34,7 +34,7 @@ impl Units {
         let size = (distances(mean(position, count)).sum::<f64>() / count as f64).sqrt();
         let typical = median(distances(medians(position, count)).collect()).sqrt();
         let size = if typical > 0.0 && size > FAR * typical { typical } else { size };
-        Units { length: power_of_two(size), mass: power_of_two(heaviest) }
+        SweepUnits { length: power_of_two(size), mass: power_of_two(heaviest) }
     }
 
     /// Converts a length to these units.
@@ -64,12 +64,12 @@ fn power_of_two(number: f64) -> f64 {
 }
 
 /// Mean of the first entries.
-fn mean(columns: &Columns, count: usize) -> [f64; 3] {
+fn mean(columns: &StateColumns, count: usize) -> [f64; 3] {
     columns.each_ref().map(|column| column[..count].iter().sum::<f64>() / count as f64)
 }
 
 /// Median of the first entries.
-fn medians(columns: &Columns, count: usize) -> [f64; 3] {
+fn medians(columns: &StateColumns, count: usize) -> [f64; 3] {
     columns.each_ref().map(|column| median(column[..count].to_vec()))
 }
 
@@ -82,8 +82,8 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 }
 
 /// Columns of bodies in precision `P`, repeated as often as a sweep needs.
-pub(super) struct Rounded<P> {
-    pub(super) units: Units,
+pub(super) struct RoundedBodies<P> {
+    pub(super) units: SweepUnits,
     /// Number of bodies, and of entries including padding.
     sizes: [usize; 2],
     pub(super) position: [Vec<P>; 3],
@@ -93,14 +93,14 @@ pub(super) struct Rounded<P> {
     pub(super) mass: Vec<P>,
 }
 
-impl<P: Precision> Rounded<P> {
+impl<P: Precision> RoundedBodies<P> {
     /// Creates columns of `entries` bodies (padding included), repeated `times` times.
-    pub(super) fn new(bodies: &Bodies, entries: usize, times: usize) -> Self {
-        let units = Units::of::<P>(bodies);
+    pub(super) fn new(bodies: &PointMasses, entries: usize, times: usize) -> Self {
+        let units = SweepUnits::of::<P>(bodies);
         let all = || vec![P::default(); times * entries];
         let rest = || if is_split::<P>() { all() } else { vec![] };
         let mass: Vec<P> = bodies.mass[..entries].iter().map(|m| P::from_f64(m / units.mass)).collect();
-        Rounded {
+        RoundedBodies {
             units,
             sizes: [bodies.len(), entries],
             position: [all(), all(), all()],
@@ -114,7 +114,7 @@ impl<P: Precision> Rounded<P> {
     pub(super) const BYTES: usize = (if is_split::<P>() { 10 } else { 7 }) * P::BYTES;
 
     /// Converts positions and, if given, velocities.
-    pub(super) fn take(&mut self, position: &Columns, velocity: Option<&Columns>) {
+    pub(super) fn take(&mut self, position: &StateColumns, velocity: Option<&StateColumns>) {
         let [count, entries] = self.sizes;
         if !is_split::<P>() {
             let velocity = velocity.into_iter().flatten();
@@ -144,7 +144,7 @@ impl<P: Precision> Rounded<P> {
     }
 
     /// Converts positions relative to an origin (length), and stores the remainders of rounding.
-    fn place_about(&mut self, position: &Columns, about: [f64; 3]) {
+    fn place_about(&mut self, position: &StateColumns, about: [f64; 3]) {
         let ([_, entries], units) = (self.sizes, self.units);
         for (axis, from) in position.iter().enumerate() {
             let place = |x: f64| units.length(x - about[axis]);
@@ -155,8 +155,8 @@ impl<P: Precision> Rounded<P> {
     }
 
     /// Borrows the columns as input of a sweep over all pairs.
-    pub(super) fn bodies(&self) -> all_pairs::Bodies<'_, P> {
-        all_pairs::Bodies {
+    pub(super) fn bodies(&self) -> all_pairs::BodyColumns<'_, P> {
+        all_pairs::BodyColumns {
             position: self.position.each_ref().map(Vec::as_slice),
             rest: self.rest.each_ref().map(Vec::as_slice),
             velocity: self.velocity.each_ref().map(Vec::as_slice),

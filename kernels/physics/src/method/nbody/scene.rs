@@ -1,14 +1,16 @@
 //! Scene of bodies as plain data.
 
 use super::keys::*;
-use super::options::{ArithmeticKind, Engine, StartKind};
+use super::options::{ArithmeticKind, ForceEngine, StartKind};
 use super::schemes::SchemeName;
-use crate::scene::{Binding, Output, Precision, Run, Write, bind_arithmetic, bind_execution, bind_heading};
+use crate::scene::{
+    Binding, Output, Precision, RunKeys, Write, bind_arithmetic, bind_execution, bind_heading,
+};
 use stripmine_kernels::{Execution, InstructionSet};
 
 /// Bodies at the start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Start {
+pub struct NbodyStart {
     /// Kind of start.
     pub kind: StartKind,
     /// Number of drawn bodies.
@@ -33,11 +35,11 @@ pub struct Start {
 
 /// Scene of the method, in its own units; `units` names them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scene {
+pub struct NbodyScene {
     /// Label of the unit system.
     pub units: String,
     /// Bodies at the start.
-    pub start: Start,
+    pub start: NbodyStart,
     /// Softening ε (length).
     pub softening: f64,
     /// Gravitational constant G (length³/(mass·time²)).
@@ -49,7 +51,7 @@ pub struct Scene {
     /// Time step (time).
     pub dt: f64,
     /// Engine that calculates the forces.
-    pub engine: Engine,
+    pub engine: ForceEngine,
     /// Execution of the engine's programs, if it has any.
     pub execution: Execution,
     /// Rounding of products and roots.
@@ -59,16 +61,16 @@ pub struct Scene {
     /// Instruction set; the widest available if none.
     pub instruction_set: Option<InstructionSet>,
     /// Duration and output intervals.
-    pub run: Run,
+    pub run: RunKeys,
     /// Output files.
     pub output: Output,
 }
 
-impl Default for Scene {
+impl Default for NbodyScene {
     fn default() -> Self {
-        Scene {
+        NbodyScene {
             units: String::new(),
-            start: Start {
+            start: NbodyStart {
                 kind: StartKind::Plummer,
                 count: 0,
                 seed: 1,
@@ -85,18 +87,18 @@ impl Default for Scene {
             scheme: SchemeName::Leapfrog,
             damping: 1.0,
             dt: 0.0,
-            engine: Engine::Fast,
+            engine: ForceEngine::Fast,
             execution: Execution::Chained,
             arithmetic: ArithmeticKind::Exact,
             precision: Precision::F64,
             instruction_set: None,
-            run: Run::default(),
+            run: RunKeys::default(),
             output: Output::default(),
         }
     }
 }
 
-impl Start {
+impl NbodyStart {
     fn bind(&mut self, binding: &mut dyn Binding) {
         binding.choice(&GENERATE, &mut self.kind);
         match self.kind {
@@ -135,7 +137,7 @@ pub(super) fn constant_of(units: &str) -> f64 {
     if units == "SI" { CODATA } else { 1.0 }
 }
 
-impl Scene {
+impl NbodyScene {
     /// Binds every key of the method.
     pub(super) fn bind(&mut self, binding: &mut dyn Binding) {
         bind_heading(binding, &mut self.units, VOCABULARY.keys.method);
@@ -148,10 +150,10 @@ impl Scene {
         }
         binding.number(&crate::scene::DT, &mut self.dt);
         binding.choice(&ENGINE, &mut self.engine);
-        if self.engine == Engine::Programs {
+        if self.engine == ForceEngine::Programs {
             bind_execution(binding, &EXECUTION, &mut self.execution);
         }
-        if matches!(self.engine, Engine::Auto | Engine::Fast) {
+        if matches!(self.engine, ForceEngine::Auto | ForceEngine::Fast) {
             binding.choice(&ROOTS, &mut self.arithmetic);
         }
         bind_arithmetic(binding, &mut self.precision, &mut self.instruction_set);

@@ -1,13 +1,13 @@
 //! Force sum on the vector machine (PWP): whole-array operations between all bodies and those shifted by an offset, for every shift.
 
-use super::bodies::{Bodies, Columns};
-use super::rounded::Rounded;
-use super::sums::{Stop, Sums, over, potential};
+use super::bodies::{PointMasses, StateColumns};
+use super::rounded::RoundedBodies;
+use super::sums::{ForceSums, StopCallback, over, potential};
 use crate::method::VectorProgram;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::{Memory, ProgramError, Slot};
 use stripmine_kernels::law::gravity::Gravity;
-use stripmine_kernels::law::{Axis, Field, Law, Sum};
+use stripmine_kernels::law::{Axis, Law, ParticleField, ParticleSum};
 use stripmine_kernels::sweep::all_pairs::is_split;
 use stripmine_kernels::sweep::all_pairs::shifts::{
     BODY_POSITION, BODY_REST, Shifts, body_array, body_sum_array,
@@ -19,7 +19,7 @@ const BLOCK: usize = 16;
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// Programs over all shifts, in precision `P`.
-pub(super) struct Shifted<P: backend::Precision> {
+pub(super) struct ShiftedPrograms<P: backend::Precision> {
     softening: f64,
     count: usize,
     execution: Execution,
@@ -27,7 +27,7 @@ pub(super) struct Shifted<P: backend::Precision> {
     forces: Vec<Program<Shifts<P, Gravity<false>>>>,
     with_rates: Vec<Program<Shifts<P, Gravity<true>>>>,
     /// Bodies stored twice in a row, so that shifts need no wrapping.
-    bodies: Rounded<P>,
+    bodies: RoundedBodies<P>,
     /// Sums of the forces and their rates.
     sums: [Vec<P>; 6],
     /// Masses in double precision, for the energy.
@@ -62,18 +62,18 @@ pub(super) fn counted(softening: f64, count: usize) -> Vec<VectorProgram> {
         .collect()
 }
 
-impl<P: backend::Precision> Shifted<P> {
+impl<P: backend::Precision> ShiftedPrograms<P> {
     /// Creates the sums of bodies.
     pub(super) fn new(
         softening: f64,
-        bodies: &Bodies,
+        bodies: &PointMasses,
         (execution, set): (Execution, InstructionSet),
     ) -> Self {
         let count = bodies.len();
         let masses = bodies.mass[..count].to_vec();
-        let bodies = Rounded::new(bodies, count, 2);
+        let bodies = RoundedBodies::new(bodies, count, 2);
         let held = bodies.units.length(softening);
-        Shifted {
+        ShiftedPrograms {
             softening,
             count,
             execution,
@@ -100,7 +100,7 @@ fn run<P: backend::Precision, L: Law<3> + Send + Sync>(
     memory: &Memory<'_>,
     count: usize,
     (execution, set): (Execution, InstructionSet),
-    stop: Stop<'_>,
+    stop: StopCallback<'_>,
 ) -> Result<(), ProgramError> {
     programs.iter().try_for_each(|program| {
         if stop() {
@@ -110,22 +110,22 @@ fn run<P: backend::Precision, L: Law<3> + Send + Sync>(
     })
 }
 
-impl<P: backend::Precision> Shifted<P> {
+impl<P: backend::Precision> ShiftedPrograms<P> {
     /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { program_bytes::<P, true>(count) } else { 0 };
-        let columns = 2 * Rounded::<P>::BYTES + 6 * P::BYTES + size_of::<f64>();
+        let columns = 2 * RoundedBodies::<P>::BYTES + 6 * P::BYTES + size_of::<f64>();
         count * columns + program_bytes::<P, false>(count) + rates
     }
 }
 
-impl<P: backend::Precision> Sums for Shifted<P> {
+impl<P: backend::Precision> ForceSums for ShiftedPrograms<P> {
     fn sum(
         &mut self,
-        position: &Columns,
-        velocity: Option<&Columns>,
+        position: &StateColumns,
+        velocity: Option<&StateColumns>,
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
         let count = self.count;
         self.bodies.take(position, velocity);
@@ -133,21 +133,21 @@ impl<P: backend::Precision> Sums for Shifted<P> {
             self.with_rates = programs(self.bodies.units.length(self.softening), count);
         }
         self.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
-        let Shifted { forces, with_rates, bodies, sums, .. } = self;
+        let ShiftedPrograms { forces, with_rates, bodies, sums, .. } = self;
         let mut memory = Memory::new();
-        memory.bind_read(Slot::new(body_array(Field::Mass)), &bodies.mass);
+        memory.bind_read(Slot::new(body_array(ParticleField::Mass)), &bodies.mass);
         for axis in AXES {
             memory.bind_read(Slot::new(BODY_POSITION[axis as usize]), &bodies.position[axis as usize]);
             if is_split::<P>() {
                 memory.bind_read(Slot::new(BODY_REST[axis as usize]), &bodies.rest[axis as usize]);
             }
-            let of_velocity = body_array(Field::Velocity(axis));
+            let of_velocity = body_array(ParticleField::Velocity(axis));
             memory.bind_read(Slot::new(of_velocity), &bodies.velocity[axis as usize]);
         }
         let [fx, fy, fz, rate_x, rate_y, rate_z] = sums;
         for (axis, (force, rate)) in AXES.into_iter().zip([(fx, rate_x), (fy, rate_y), (fz, rate_z)]) {
-            memory.bind_write(Slot::new(body_sum_array(Sum::Force(axis))), force);
-            memory.bind_write(Slot::new(body_sum_array(Sum::ForceRate(axis))), rate);
+            memory.bind_write(Slot::new(body_sum_array(ParticleSum::Force(axis))), force);
+            memory.bind_write(Slot::new(body_sum_array(ParticleSum::ForceRate(axis))), rate);
         }
         let way = (self.execution, self.set);
         match velocity {
@@ -158,7 +158,7 @@ impl<P: backend::Precision> Sums for Shifted<P> {
         if observed { potential(&self.masses, position, self.softening, stop) } else { Ok(0.0) }
     }
 
-    fn over(&self, per_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
+    fn over(&self, per_mass: &[f64], [acceleration, jerk]: [Option<&mut StateColumns>; 2]) {
         let units = self.bodies.units;
         over(&self.sums[..3], units.force(), per_mass, acceleration);
         over(&self.sums[3..], units.force_rate(), per_mass, jerk);

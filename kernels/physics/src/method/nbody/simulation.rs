@@ -1,19 +1,20 @@
 //! Simulation of bodies: steps, observes and checks them.
 
-use super::bodies::{Bodies, Columns};
-use super::checked::Checked;
-use super::conserved::Conserved;
-use super::encounter::{Encounter, Encounters};
-use super::field::Attraction;
-use super::quantities::{OBSERVABLES, Seen};
-use super::schemes::Scheme;
-use super::sums::{Stop, never};
-use super::watch::Watch;
-use crate::io::checkpoint::Column;
+use super::bodies::{PointMasses, StateColumns};
+use super::checked::CheckedNbody;
+use super::conserved::ConservedQuantities;
+use super::encounter::{NearestPair, NearestPairSearch};
+use super::field::GravityField;
+use super::quantities::{NbodyObservation, OBSERVABLES};
+use super::schemes::BodyIntegrator;
+use super::sums::{StopCallback, never};
+use super::watch::EnergyMonitor;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::Elapsed;
 use crate::method::stepped::{Stepped, SteppedState, Stepwise};
 use crate::method::{
-    Clock, Culprit, Failure, FailureKind, Observable, PerParticle, Purpose, RunWarning, Snapshot, ended,
+    Clock, Culprit, FailureKind, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot,
+    StartPurpose, ended,
 };
 use crate::number::significant;
 use crate::particles::Particles;
@@ -33,83 +34,86 @@ const EVALUATIONS: &str = "evaluations";
 const COLUMNS: [&str; 6] = ["x", "y", "z", "vx", "vy", "vz"];
 
 /// Stepped state of the bodies.
-pub(super) struct Moved {
+pub(super) struct SteppedBodies {
     elapsed: Elapsed,
-    pub(super) bodies: Bodies,
-    scheme: Box<dyn Scheme>,
+    pub(super) bodies: PointMasses,
+    scheme: Box<dyn BodyIntegrator>,
     /// Mutable while observing, because the pair energy is found with the forces.
-    pub(super) field: RefCell<Attraction>,
+    pub(super) field: RefCell<GravityField>,
     particles: Particles,
 }
 
 /// State of a run beside its bodies.
-pub(super) struct Watched {
+pub(super) struct NbodyRunState {
     softening: f64,
     /// Steps between observed rows, and the last step, which is observed too; none in a measurement.
     rows: Option<[u64; 2]>,
-    watch: Watch,
-    encounters: Encounters,
+    watch: EnergyMonitor,
+    encounters: NearestPairSearch,
     /// Nearest pair at the last check.
-    last_encounter: Option<Encounter>,
-    before: Before,
+    last_encounter: Option<NearestPair>,
+    before: SavedStep,
     /// Cached conserved quantities of the current state.
-    seen: RefCell<Option<Result<Conserved, ProgramError>>>,
+    seen: RefCell<Option<Result<ConservedQuantities, ProgramError>>>,
 }
 
 /// Running simulation: state and observation of the bodies.
-pub(super) type Running = Stepped<Watched>;
+pub(super) type NbodySimulation = Stepped<NbodyRunState>;
 
 /// State before a step of many bodies, which an interrupted step restores.
 #[derive(Default)]
-struct Before {
-    position: Columns,
-    velocity: Columns,
-    carried: Vec<Columns>,
+struct SavedStep {
+    position: StateColumns,
+    velocity: StateColumns,
+    carried: Vec<StateColumns>,
     evaluations: u64,
 }
 
 /// Result of a step.
-struct Found {
+struct StepResult {
     /// First body whose state is not finite, and the number of such bodies.
     not_finite: Option<(usize, usize)>,
     /// Conserved quantities, if observed.
-    seen: Option<Conserved>,
+    seen: Option<ConservedQuantities>,
 }
 
 /// Creates the simulation at the start.
 ///
 /// # Errors
 /// [`Failure`] if the processor lacks the instruction set, or the bodies cannot be distributed to the number of ranks.
-pub(super) fn begin(checked: &Checked, purpose: Purpose) -> Result<Running, Failure> {
+pub(super) fn begin(
+    checked: &CheckedNbody,
+    purpose: StartPurpose,
+) -> Result<NbodySimulation, PhysicsFailure> {
     let scene = &checked.scene;
     let all = checked.particles.all();
-    let bodies = Bodies::new(all.iter().map(|body| (body.position, body.velocity, body.mass)));
-    let mut field = Attraction::new(scene, &bodies)?;
+    let bodies = PointMasses::new(all.iter().map(|body| (body.position, body.velocity, body.mass)));
+    let mut field = GravityField::new(scene, &bodies)?;
     let potential = field.potential(&bodies.position, &never)?;
-    let start = Conserved::of(&bodies, potential);
-    let (mut watch, mut encounters) = (Watch::new(&start), Encounters::default());
+    let start = ConservedQuantities::of(&bodies, potential);
+    let (mut watch, mut encounters) = (EnergyMonitor::new(&start), NearestPairSearch::default());
     let nearest = encounters.nearest(&bodies.position, bodies.len());
     watch.look(start.energy(), nearest, 0);
-    let moved = Moved {
+    let moved = SteppedBodies {
         elapsed: Elapsed::of_steps(scene.dt),
         bodies,
         scheme: scene.scheme.scheme(scene.damping),
         field: RefCell::new(field),
         particles: checked.particles.clone(),
     };
-    let watched = Watched {
+    let watched = NbodyRunState {
         softening: scene.softening,
-        rows: (purpose == Purpose::Run).then_some([scene.run.thermo_every, scene.run.steps]),
+        rows: (purpose == StartPurpose::Run).then_some([scene.run.thermo_every, scene.run.steps]),
         watch,
         encounters,
         last_encounter: nearest,
-        before: Before::default(),
+        before: SavedStep::default(),
         seen: RefCell::new(Some(Ok(start))),
     };
     Ok(Stepped::new(moved, watched))
 }
 
-impl Running {
+impl NbodySimulation {
     fn is_few(&self) -> bool {
         self.state.bodies.len() <= FEW
     }
@@ -127,17 +131,17 @@ impl Running {
     }
 
     /// Conserved quantities of the state, calculated once.
-    fn conserved(&self) -> Result<Conserved, ProgramError> {
+    fn conserved(&self) -> Result<ConservedQuantities, ProgramError> {
         let found = || {
             let potential = self.state.field.borrow_mut().potential(&self.state.bodies.position, &never)?;
-            Ok(Conserved::of(&self.state.bodies, potential))
+            Ok(ConservedQuantities::of(&self.state.bodies, potential))
         };
         self.method.seen.borrow_mut().get_or_insert_with(found).clone()
     }
 
     /// Conserved quantities with NaN if the pair energy is unavailable, which [`check`](crate::method::Simulation::check) has reported before.
-    fn conserved_or_nothing(&self) -> Conserved {
-        self.conserved().unwrap_or_else(|_| Conserved::of(&self.state.bodies, f64::NAN))
+    fn conserved_or_nothing(&self) -> ConservedQuantities {
+        self.conserved().unwrap_or_else(|_| ConservedQuantities::of(&self.state.bodies, f64::NAN))
     }
 
     fn id(&self, body: usize) -> u32 {
@@ -154,29 +158,31 @@ impl Running {
     }
 
     /// Advances the bodies by a step, and calculates the conserved quantities if `observed`.
-    fn attempt(&mut self, observed: bool, stop: Stop<'_>) -> Result<Found, ProgramError> {
+    fn attempt(&mut self, observed: bool, stop: StopCallback<'_>) -> Result<StepResult, ProgramError> {
         let mut field = self.state.field.get_mut().asking(observed, stop);
         self.state.scheme.step(&mut self.state.bodies, self.state.elapsed.dt, &mut field)?;
         let not_finite = self.state.bodies.not_finite();
         let seen = match observed && not_finite.is_none() {
-            true => Some(Conserved::of(&self.state.bodies, field.energy(&self.state.bodies.position)?)),
+            true => {
+                Some(ConservedQuantities::of(&self.state.bodies, field.energy(&self.state.bodies.position)?))
+            }
             false => None,
         };
-        Ok(Found { not_finite, seen })
+        Ok(StepResult { not_finite, seen })
     }
 
     fn keep(&mut self) {
-        let Before { position, velocity, carried, evaluations } = &mut self.method.before;
+        let SavedStep { position, velocity, carried, evaluations } = &mut self.method.before;
         position.clone_from(&self.state.bodies.position);
         velocity.clone_from(&self.state.bodies.velocity);
         let now = self.state.scheme.carried();
-        carried.resize_with(now.len(), Columns::default);
+        carried.resize_with(now.len(), StateColumns::default);
         carried.iter_mut().zip(now).for_each(|(to, from)| to.clone_from(from));
         *evaluations = self.state.field.get_mut().evaluations;
     }
 
     fn go_back(&mut self) {
-        let Before { position, velocity, carried, evaluations } = &mut self.method.before;
+        let SavedStep { position, velocity, carried, evaluations } = &mut self.method.before;
         self.state.bodies.position.clone_from(position);
         self.state.bodies.velocity.clone_from(velocity);
         self.state.scheme.take_up(&self.state.bodies, std::mem::take(carried));
@@ -184,7 +190,7 @@ impl Running {
     }
 
     /// Failure of bodies whose state is not finite, with the nearest pair before the step.
-    fn not_finite(&mut self, first: usize, count: usize) -> Failure {
+    fn not_finite(&mut self, first: usize, count: usize) -> PhysicsFailure {
         let before = match self.is_few() {
             true => self.method.last_encounter,
             false => self.method.encounters.nearest(&self.method.before.position, self.state.bodies.len()),
@@ -200,8 +206,8 @@ impl Running {
     }
 
     /// Describes a pair of bodies that `are` or `were` near each other.
-    fn met(&self, encounter: &Encounter, are: &str) -> String {
-        let Encounter { bodies, distance, place: [x, y, z] } = *encounter;
+    fn met(&self, encounter: &NearestPair, are: &str) -> String {
+        let NearestPair { bodies, distance, place: [x, y, z] } = *encounter;
         let [first, second] = bodies.map(|body| self.id(body));
         let place = format!("({}, {}, {})", significant(x, 6), significant(y, 6), significant(z, 6));
         let apart = match distance {
@@ -215,20 +221,27 @@ impl Running {
         format!("bodies {first} and {second} {are} {apart} at {place}, and {softened}")
     }
 
-    fn of_encounter(&self, kind: FailureKind, message: String, encounter: Option<Encounter>) -> Failure {
+    fn of_encounter(
+        &self,
+        kind: FailureKind,
+        message: String,
+        encounter: Option<NearestPair>,
+    ) -> PhysicsFailure {
         let remedy = format!(
             "the time step is too long for this encounter: lower integrator.dt (it is {}), or raise law.softening above {}",
             self.state.elapsed.dt, self.method.softening
         );
         let distance = encounter.map(|it| ("distance", it.distance));
-        Failure::new(kind, message, remedy).at(self.clock()).with(distance.into_iter().collect::<Vec<_>>())
+        PhysicsFailure::new(kind, message, remedy)
+            .at(self.clock())
+            .with(distance.into_iter().collect::<Vec<_>>())
     }
 
     /// Checks the conserved quantities against those at the start.
-    fn sound(&self, seen: &Conserved) -> Result<(), Failure> {
+    fn sound(&self, seen: &ConservedQuantities) -> Result<(), PhysicsFailure> {
         if !seen.is_finite() {
             let bodies = &self.state.bodies;
-            let nearest = Encounters::default().nearest(&bodies.position, bodies.len());
+            let nearest = NearestPairSearch::default().nearest(&bodies.position, bodies.len());
             let met = nearest.map_or(String::new(), |nearest| format!("; {}", self.met(&nearest, "are")));
             let message = format!(
                 "the kinetic energy is {} and the potential energy {}{met}",
@@ -251,14 +264,14 @@ impl Running {
             nearest.map_or(String::new(), |words| format!("; {words}"))
         );
         let remedy = "the integrator loses the orbit: lower integrator.dt, set another integrator.kind, or raise law.softening";
-        let failure = Failure::new(super::UNBOUND, message, remedy).at(self.clock());
+        let failure = PhysicsFailure::new(super::UNBOUND, message, remedy).at(self.clock());
         Err(failure.with([("energy", energy), ("energy_at_start", self.method.watch.start)]))
     }
 
     /// Current observation.
-    fn seen(&self) -> Seen {
+    fn seen(&self) -> NbodyObservation {
         let conserved = self.conserved_or_nothing();
-        Seen {
+        NbodyObservation {
             time: self.clock().time,
             conserved,
             energy_error: self.method.watch.relative(conserved.energy()),
@@ -273,7 +286,7 @@ impl Running {
     }
 }
 
-impl PerParticle for Moved {
+impl PerParticle for SteppedBodies {
     fn particles(&self) -> Particles {
         let mut particles = self.particles.clone();
         for (number, body) in particles.all_mut().iter_mut().enumerate() {
@@ -284,7 +297,7 @@ impl PerParticle for Moved {
     }
 }
 
-impl SteppedState for Moved {
+impl SteppedState for SteppedBodies {
     fn elapsed(&self) -> &Elapsed {
         &self.elapsed
     }
@@ -293,11 +306,11 @@ impl SteppedState for Moved {
         self
     }
 
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         self.field.borrow().lost().map_or(Ok(()), |lost| Err(ended(lost, self.elapsed.clock())))
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         let count = self.bodies.len();
         let state = self.bodies.position.iter().chain(&self.bodies.velocity);
         let named = COLUMNS.iter().map(|name| (*name).to_owned());
@@ -305,17 +318,17 @@ impl SteppedState for Moved {
         let carried = carried.iter().enumerate().flat_map(|(order, columns)| {
             columns.iter().enumerate().map(move |(axis, column)| (format!("carried.{order}.{axis}"), column))
         });
-        let taken = |column: &Vec<f64>| Column::F64(column.iter().take(count).copied().collect());
+        let taken = |column: &Vec<f64>| CheckpointColumn::F64(column.iter().take(count).copied().collect());
         named.zip(state).chain(carried).map(|(name, column)| (name, taken(column))).collect()
     }
 }
 
-impl Stepwise for Watched {
-    type State = Moved;
-    type Seen = Seen;
-    const OBSERVABLES: &'static [Observable<Seen>] = &OBSERVABLES;
+impl Stepwise for NbodyRunState {
+    type State = SteppedBodies;
+    type Seen = NbodyObservation;
+    const OBSERVABLES: &'static [MethodObservable<NbodyObservation>] = &OBSERVABLES;
 
-    fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, Failure> {
+    fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, PhysicsFailure> {
         let (steps, is_few) = (run.state.elapsed.steps + 1, run.is_few());
         // A step of few bodies is too short to interrupt.
         let stop = || !is_few && interrupted.load(Ordering::Relaxed);
@@ -346,11 +359,11 @@ impl Stepwise for Watched {
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Seen) -> R) -> R {
+    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&NbodyObservation) -> R) -> R {
         work(&run.seen())
     }
 
-    fn check(run: &Stepped<Self>) -> Result<(), Failure> {
+    fn check(run: &Stepped<Self>) -> Result<(), PhysicsFailure> {
         run.sound(&run.conserved()?)
     }
 
@@ -422,7 +435,7 @@ impl Stepwise for Watched {
 }
 
 /// Radius around the centre of mass that contains half of the mass.
-fn half_mass_radius(bodies: &Bodies, centre: [f64; 3]) -> f64 {
+fn half_mass_radius(bodies: &PointMasses, centre: [f64; 3]) -> f64 {
     let mut around: Vec<(f64, f64)> = (0..bodies.len())
         .map(|body| {
             let place = bodies.position_of(body);

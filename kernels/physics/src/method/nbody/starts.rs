@@ -2,17 +2,17 @@
 //! gravity scale with √G.
 
 use super::options::StartKind;
-use super::scene::Start;
+use super::scene::NbodyStart;
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 
 /// Mass, position (length) and velocity (length/time) of a body.
-pub(crate) type Body = (f64, [f64; 3], [f64; 3]);
+pub(crate) type InitialBody = (f64, [f64; 3], [f64; 3]);
 
 /// Creates the bodies of a start, with softening ε (length) and gravitational constant G.
-pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {
+pub fn bodies(start: &NbodyStart, softening: f64, constant: f64) -> Vec<InitialBody> {
     let root = constant.sqrt();
     match start.kind {
         StartKind::Kepler => faster(kepler(start.eccentricity, start.mass_ratio), root),
@@ -32,13 +32,13 @@ pub fn bodies(start: &Start, softening: f64, constant: f64) -> Vec<Body> {
 }
 
 /// Multiplies all velocities by a factor.
-fn faster(mut bodies: Vec<Body>, times: f64) -> Vec<Body> {
+fn faster(mut bodies: Vec<InitialBody>, times: f64) -> Vec<InitialBody> {
     bodies.iter_mut().for_each(|(.., velocity)| *velocity = velocity.map(|v| times * v));
     bodies
 }
 
 /// Two bodies about their centre of mass, at the nearest point: semi-major axis, total mass and G are 1.
-fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<Body> {
+fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<InitialBody> {
     let share = mass_ratio / (1.0 + mass_ratio);
     let distance = 1.0 - eccentricity;
     let speed = ((1.0 + eccentricity) / distance).sqrt();
@@ -49,7 +49,7 @@ fn kepler(eccentricity: f64, mass_ratio: f64) -> Vec<Body> {
 }
 
 /// Three equal bodies on the figure of eight (Chenciner and Montgomery 2000), whose masses of 1 are thirds here.
-fn figure_eight() -> Vec<Body> {
+fn figure_eight() -> Vec<InitialBody> {
     // If masses are multiplied by m, velocities are multiplied by √m.
     let slow = (1.0f64 / 3.0).sqrt();
     let [x, y] = [0.970_004_36, -0.243_087_53];
@@ -73,10 +73,10 @@ fn direction(random: &mut Stream) -> [f64; 3] {
 /// Plummer's sphere of scale 1 in equilibrium (Aarseth, Hénon and Wielen 1974), cut off where it contains 0.999 of its mass.
 ///
 /// Each body draws from the random stream of its number.
-fn plummer(numbers: Range<usize>, seed: u64) -> Vec<Body> {
+fn plummer(numbers: Range<usize>, seed: u64) -> Vec<InitialBody> {
     let mass = 1.0 / numbers.len() as f64;
     let body = |number: usize| {
-        let mut random = Stream::new(seed, Purpose::Placement, number as u32 + 1);
+        let mut random = Stream::new(seed, RandomPurpose::Placement, number as u32 + 1);
         let inside = random.random_range(0.0..0.999);
         let radius = 1.0 / (libm::pow(inside, -2.0 / 3.0) - 1.0).sqrt();
         let place = direction(&mut random).map(|x| radius * x);
@@ -94,10 +94,10 @@ fn plummer(numbers: Range<usize>, seed: u64) -> Vec<Body> {
 }
 
 /// Uniform sphere of radius 1, or its surface, expanding.
-fn sphere(start: &Start) -> Vec<Body> {
+fn sphere(start: &NbodyStart) -> Vec<InitialBody> {
     let mass = 1.0 / start.count as f64;
     let body = |number: usize| {
-        let mut random = Stream::new(start.seed, Purpose::Placement, number as u32 + 1);
+        let mut random = Stream::new(start.seed, RandomPurpose::Placement, number as u32 + 1);
         let radius = match start.kind {
             StartKind::Shell => 1.0,
             _ => libm::cbrt(random.random_range(0.0..1.0)),
@@ -109,7 +109,7 @@ fn sphere(start: &Start) -> Vec<Body> {
 }
 
 /// Adds random velocities whose kinetic energy is the given fraction of the potential energy.
-fn stir(bodies: &mut [Body], start: &Start, softening: f64, constant: f64) {
+fn stir(bodies: &mut [InitialBody], start: &NbodyStart, softening: f64, constant: f64) {
     if start.virial == 0.0 {
         return;
     }
@@ -119,7 +119,7 @@ fn stir(bodies: &mut [Body], start: &Start, softening: f64, constant: f64) {
             let [a, b] = [1, 2].map(|step| {
                 stripmine_kernels::noise::normals(
                     start.seed,
-                    Purpose::Placement,
+                    RandomPurpose::Placement,
                     number as u32 + 1,
                     1 << 32 | step,
                 )
@@ -137,7 +137,7 @@ fn stir(bodies: &mut [Body], start: &Start, softening: f64, constant: f64) {
 }
 
 /// Potential energy of all pairs.
-fn potential(bodies: &[Body], softening: f64) -> f64 {
+fn potential(bodies: &[InitialBody], softening: f64) -> f64 {
     let of = |number: usize| -> f64 {
         let (m, r, _) = bodies[number];
         let pairs = bodies[..number].iter().map(|(other, there, _)| {
@@ -150,7 +150,7 @@ fn potential(bodies: &[Body], softening: f64) -> f64 {
 }
 
 /// Two approaching Plummer spheres, each with half of the bodies and of the mass; `root` is √G.
-fn two_clusters(start: &Start, root: f64) -> Vec<Body> {
+fn two_clusters(start: &NbodyStart, root: f64) -> Vec<InitialBody> {
     let first = start.count - start.count / 2;
     let mut bodies = vec![];
     for (side, numbers) in [(-0.5, 0..first), (0.5, first..start.count)] {
@@ -168,7 +168,7 @@ fn two_clusters(start: &Start, root: f64) -> Vec<Body> {
 }
 
 /// Shifts bodies to their centre of mass and removes their momentum.
-fn centred(mut bodies: Vec<Body>) -> Vec<Body> {
+fn centred(mut bodies: Vec<InitialBody>) -> Vec<InitialBody> {
     let mass: f64 = bodies.iter().map(|(m, ..)| m).sum();
     for axis in 0..3 {
         let centre = bodies.iter().map(|(m, r, _)| m * r[axis]).sum::<f64>() / mass;
@@ -178,7 +178,7 @@ fn centred(mut bodies: Vec<Body>) -> Vec<Body> {
     bodies
 }
 
-fn without_drift(bodies: &mut [Body]) {
+fn without_drift(bodies: &mut [InitialBody]) {
     let mass: f64 = bodies.iter().map(|(m, ..)| m).sum();
     for axis in 0..3 {
         let drift = bodies.iter().map(|(m, _, v)| m * v[axis]).sum::<f64>() / mass;
@@ -193,11 +193,11 @@ pub const ORBIT: f64 = 2.0 * PI;
 mod tests {
     use super::*;
 
-    fn start(kind: StartKind, count: usize) -> Start {
-        Start { kind, count, ..super::super::scene::Scene::default().start }
+    fn start(kind: StartKind, count: usize) -> NbodyStart {
+        NbodyStart { kind, count, ..super::super::scene::NbodyScene::default().start }
     }
 
-    fn kinetic(bodies: &[Body]) -> f64 {
+    fn kinetic(bodies: &[InitialBody]) -> f64 {
         bodies.iter().map(|(m, _, v)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
     }
 
@@ -221,7 +221,7 @@ mod tests {
             let energy = kinetic(&bodies) + potential(&bodies, 0.0);
             assert!((energy / (-0.5 * bodies[0].0 * bodies[1].0) - 1.0).abs() < 1e-13);
         }
-        let sphere = bodies(&Start { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0, 1.0);
+        let sphere = bodies(&NbodyStart { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0, 1.0);
         let potential = potential(&sphere, 0.0);
         assert!((potential / -0.6 - 1.0).abs() < 0.03, "{potential}");
         assert!((kinetic(&sphere) / -potential - 0.5).abs() < 1e-3);
@@ -238,7 +238,7 @@ mod tests {
     fn clusters_and_seeds_share_no_body() {
         let mut seen: Vec<[f64; 6]> = vec![];
         for seed in [0, 1, 2, 3, u64::MAX] {
-            let all = bodies(&Start { seed, ..start(StartKind::TwoClusters, 64) }, 0.0, 1.0);
+            let all = bodies(&NbodyStart { seed, ..start(StartKind::TwoClusters, 64) }, 0.0, 1.0);
             for cluster in all.chunks(32) {
                 let state: Vec<[f64; 6]> =
                     cluster.iter().map(|(_, [x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w]).collect();
@@ -259,14 +259,14 @@ mod tests {
     #[test]
     fn velocities_scale_with_root_g() {
         for kind in [StartKind::Kepler, StartKind::FigureEight, StartKind::Plummer, StartKind::Sphere] {
-            let start = Start { virial: 0.5, ..start(kind, 100) };
+            let start = NbodyStart { virial: 0.5, ..start(kind, 100) };
             let [one, other] = [1.0, 6.6743e-11].map(|constant| {
                 let bodies = bodies(&start, 0.0, constant);
                 kinetic(&bodies) / (constant * potential(&bodies, 0.0))
             });
             assert!((other / one - 1.0).abs() < 1e-12, "{kind:?}: {one} {other}");
         }
-        let expanding = Start { expansion: 2.0, ..start(StartKind::Shell, 10) };
+        let expanding = NbodyStart { expansion: 2.0, ..start(StartKind::Shell, 10) };
         assert_eq!(bodies(&expanding, 0.0, 1.0), bodies(&expanding, 0.0, 6.6743e-11));
     }
 }

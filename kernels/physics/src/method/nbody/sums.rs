@@ -1,12 +1,12 @@
 //! Interface of the force sums over pairs of bodies, and their shared functions.
 
-use super::bodies::Columns;
+use super::bodies::StateColumns;
 use crate::ranks::RankError;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 
 /// Callback that returns true if a sum must stop; called now and then.
-pub(crate) type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
+pub(crate) type StopCallback<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Callback that never stops a sum.
 pub fn never() -> bool {
@@ -14,21 +14,21 @@ pub fn never() -> bool {
 }
 
 /// Implementation of the sums of forces and, if velocities are given, of their rates.
-pub(crate) trait Sums: Send + Sync {
+pub(crate) trait ForceSums: Send + Sync {
     /// Sums for a gravitational constant of 1. Returns the energy of the pairs if `observed`, else 0.
     ///
     /// # Errors
     /// [`ProgramError`] if the processor lacks the instruction set, or `stop` returns true.
     fn sum(
         &mut self,
-        position: &Columns,
-        velocity: Option<&Columns>,
+        position: &StateColumns,
+        velocity: Option<&StateColumns>,
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError>;
 
     /// Writes the forces, and their rates, times `per_mass`.
-    fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]);
+    fn over(&self, per_mass: &[f64], into: [Option<&mut StateColumns>; 2]);
 
     /// Returns the lost rank, if there are several. The sums stay correct; the first rank alone calculates them from then on.
     fn lost(&self) -> Option<RankError> {
@@ -37,7 +37,7 @@ pub(crate) trait Sums: Send + Sync {
 }
 
 /// Returns an error if the sum must stop.
-pub(super) fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
+pub(super) fn go_on(stop: StopCallback<'_>) -> Result<(), ProgramError> {
     if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
 }
 
@@ -47,9 +47,9 @@ pub(super) fn go_on(stop: Stop<'_>) -> Result<(), ProgramError> {
 /// [`ProgramError::Interrupted`] if `stop` returns true.
 pub fn potential(
     mass: &[f64],
-    position: &Columns,
+    position: &StateColumns,
     softening: f64,
-    stop: Stop<'_>,
+    stop: StopCallback<'_>,
 ) -> Result<f64, ProgramError> {
     let mut energy = 0.0;
     for body in 0..mass.len() {
@@ -67,7 +67,7 @@ pub(super) fn over<P: backend::Precision>(
     sums: &[Vec<P>],
     unit: f64,
     per_mass: &[f64],
-    into: Option<&mut Columns>,
+    into: Option<&mut StateColumns>,
 ) {
     for (into, sum) in into.into_iter().flatten().zip(sums) {
         for ((into, sum), per_mass) in into.iter_mut().zip(sum).zip(per_mass) {

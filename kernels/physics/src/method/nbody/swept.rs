@@ -1,33 +1,38 @@
 //! Force sum that visits each pair once, in vector registers and on threads.
 
-use super::bodies::{Bodies, Columns};
-use super::rounded::Rounded;
-use super::sums::{Stop, Sums, over};
+use super::bodies::{PointMasses, StateColumns};
+use super::rounded::RoundedBodies;
+use super::sums::{ForceSums, StopCallback, over};
 use crate::ranks::{RankError, numbers};
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
-use stripmine_kernels::sweep::all_pairs::{AllPairs, Arithmetic, Manner, padded};
+use stripmine_kernels::sweep::all_pairs::{AllPairs, AllPairsOptions, Arithmetic, padded};
 
 /// Sweep over all pairs in precision `P`.
-pub(super) struct Swept<P> {
+pub(super) struct PairSweep<P> {
     softening: f64,
     count: usize,
     set: InstructionSet,
     arithmetic: Arithmetic,
     forces: AllPairs<P, 3>,
     rates: Option<AllPairs<P, 6>>,
-    bodies: Rounded<P>,
+    bodies: RoundedBodies<P>,
     sums: [Vec<P>; 6],
 }
 
-impl<P: backend::Precision> Swept<P> {
-    pub(super) fn new(softening: f64, bodies: &Bodies, arithmetic: Arithmetic, set: InstructionSet) -> Self {
+impl<P: backend::Precision> PairSweep<P> {
+    pub(super) fn new(
+        softening: f64,
+        bodies: &PointMasses,
+        arithmetic: Arithmetic,
+        set: InstructionSet,
+    ) -> Self {
         let (count, entries) = (bodies.len(), bodies.entries());
-        let bodies = Rounded::new(bodies, entries, 1);
-        Swept {
+        let bodies = RoundedBodies::new(bodies, entries, 1);
+        PairSweep {
             softening: bodies.units.length(softening),
             count,
             set,
@@ -42,11 +47,11 @@ impl<P: backend::Precision> Swept<P> {
     /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { AllPairs::<P, 6>::bytes(count) } else { 0 };
-        padded(count) * (Rounded::<P>::BYTES + 6 * P::BYTES) + AllPairs::<P, 3>::bytes(count) + rates
+        padded(count) * (RoundedBodies::<P>::BYTES + 6 * P::BYTES) + AllPairs::<P, 3>::bytes(count) + rates
     }
 }
 
-impl<P: backend::Precision> Swept<P> {
+impl<P: backend::Precision> PairSweep<P> {
     /// Number of bands of rows.
     pub(super) fn bands(&self) -> usize {
         self.forces.bands()
@@ -63,15 +68,15 @@ impl<P: backend::Precision> Swept<P> {
     /// As [`sum`](Sums::sum).
     pub(super) fn meet(
         &mut self,
-        (position, velocity): (&Columns, Option<&Columns>),
+        (position, velocity): (&StateColumns, Option<&StateColumns>),
         bands: Range<usize>,
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<(), ProgramError> {
         self.bodies.take(position, velocity);
-        let Swept { softening, count, set, arithmetic, forces, rates, bodies, .. } = self;
+        let PairSweep { softening, count, set, arithmetic, forces, rates, bodies, .. } = self;
         let (softening, bodies) = (*softening, bodies.bodies());
-        let manner = Manner { observed, arithmetic: *arithmetic, set: *set, interrupted: stop };
+        let manner = AllPairsOptions { observed, arithmetic: *arithmetic, set: *set, interrupted: stop };
         match velocity {
             None => forces.meet(&Gravity::<false> { softening }, &bodies, bands, &manner),
             Some(_) => {
@@ -87,7 +92,7 @@ impl<P: backend::Precision> Swept<P> {
     /// As [`sum`](Sums::sum).
     pub(super) fn finish(&mut self, has_rates: bool) -> Result<f64, ProgramError> {
         let energy = self.bodies.units.energy();
-        let Swept { forces, rates, sums, .. } = self;
+        let PairSweep { forces, rates, sums, .. } = self;
         let sums = sums.each_mut().map(Vec::as_mut_slice);
         let [potential, _] = match rates.as_ref().filter(|_| has_rates) {
             None => {
@@ -126,7 +131,7 @@ impl<P: backend::Precision> Swept<P> {
         has_rates: bool,
         (rank, bytes): (usize, &[u8]),
     ) -> Result<(), RankError> {
-        let Swept { count, forces, rates, .. } = self;
+        let PairSweep { count, forces, rates, .. } = self;
         let (sums, energy) = match has_rates {
             false => {
                 let (sums, energy) = forces.band_mut(number);
@@ -145,19 +150,19 @@ impl<P: backend::Precision> Swept<P> {
     }
 }
 
-impl<P: backend::Precision> Sums for Swept<P> {
+impl<P: backend::Precision> ForceSums for PairSweep<P> {
     fn sum(
         &mut self,
-        position: &Columns,
-        velocity: Option<&Columns>,
+        position: &StateColumns,
+        velocity: Option<&StateColumns>,
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
         self.meet((position, velocity), 0..self.bands(), observed, stop)?;
         self.finish(velocity.is_some())
     }
 
-    fn over(&self, per_mass: &[f64], [acceleration, jerk]: [Option<&mut Columns>; 2]) {
+    fn over(&self, per_mass: &[f64], [acceleration, jerk]: [Option<&mut StateColumns>; 2]) {
         let units = self.bodies.units;
         over(&self.sums[..3], units.force(), per_mass, acceleration);
         over(&self.sums[3..], units.force_rate(), per_mass, jerk);

@@ -1,56 +1,62 @@
 //! Tests of running simulations of bodies: failures, warnings and counts.
 
-use super::bodies::Columns;
-use super::checked::{Checked, checked};
-use super::field::Pairs;
+use super::bodies::StateColumns;
+use super::checked::{CheckedNbody, checked};
+use super::field::PairSummation;
 use super::keys::VOCABULARY;
 use super::schemes::SchemeName;
-use super::simulation::{Running, begin};
-use super::sums::{Stop, Sums};
-use crate::method::{Failure, FailureKind, Purpose, Simulation, Until};
-use crate::scene::Values;
+use super::simulation::{NbodySimulation, begin};
+use super::sums::{ForceSums, StopCallback};
+use crate::method::{FailureKind, PhysicsFailure, Simulation, StartPurpose, Until};
+use crate::scene::SceneValues;
 use crate::words::Words;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use stripmine_kernels::isa::ProgramError;
 
-fn scene(preset: &str, sets: &[&str]) -> Checked {
+fn scene(preset: &str, sets: &[&str]) -> CheckedNbody {
     let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
-    checked(Values::load(preset, &sets, &[&VOCABULARY]).unwrap()).unwrap()
+    checked(SceneValues::load(preset, &sets, &[&VOCABULARY]).unwrap()).unwrap()
 }
 
-fn started(preset: &str, sets: &[&str]) -> Running {
-    begin(&scene(preset, sets), Purpose::Run).unwrap()
+fn started(preset: &str, sets: &[&str]) -> NbodySimulation {
+    begin(&scene(preset, sets), StartPurpose::Run).unwrap()
 }
 
-fn advance(running: &mut Running, steps: u64) -> Result<(), Failure> {
+fn advance(running: &mut NbodySimulation, steps: u64) -> Result<(), PhysicsFailure> {
     running.advance(&[Until::Steps(steps)], &AtomicBool::new(false))
 }
 
 /// Sums with a wrapper around them.
-struct Instead<F> {
-    inner: Option<Box<dyn Sums>>,
+struct WrappedSums<F> {
+    inner: Option<Box<dyn ForceSums>>,
     with: F,
 }
 
-impl<F> Sums for Instead<F>
+impl<F> ForceSums for WrappedSums<F>
 where
-    F: Fn(Option<&mut dyn Sums>, &Columns, Option<&Columns>, bool, Stop<'_>) -> Result<f64, ProgramError>
+    F: Fn(
+            Option<&mut dyn ForceSums>,
+            &StateColumns,
+            Option<&StateColumns>,
+            bool,
+            StopCallback<'_>,
+        ) -> Result<f64, ProgramError>
         + Send
         + Sync,
 {
     fn sum(
         &mut self,
-        position: &Columns,
-        velocity: Option<&Columns>,
+        position: &StateColumns,
+        velocity: Option<&StateColumns>,
         observed: bool,
-        stop: Stop<'_>,
+        stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
-        let inner = self.inner.as_mut().map(|inner| &mut **inner as &mut dyn Sums);
+        let inner = self.inner.as_mut().map(|inner| &mut **inner as &mut dyn ForceSums);
         (self.with)(inner, position, velocity, observed, stop)
     }
 
-    fn over(&self, per_mass: &[f64], into: [Option<&mut Columns>; 2]) {
+    fn over(&self, per_mass: &[f64], into: [Option<&mut StateColumns>; 2]) {
         if let Some(inner) = &self.inner {
             inner.over(per_mass, into);
         }
@@ -58,19 +64,25 @@ where
 }
 
 /// Wraps the sums of a simulation.
-fn between<F>(running: &mut Running, with: F)
+fn between<F>(running: &mut NbodySimulation, with: F)
 where
-    F: Fn(Option<&mut dyn Sums>, &Columns, Option<&Columns>, bool, Stop<'_>) -> Result<f64, ProgramError>
+    F: Fn(
+            Option<&mut dyn ForceSums>,
+            &StateColumns,
+            Option<&StateColumns>,
+            bool,
+            StopCallback<'_>,
+        ) -> Result<f64, ProgramError>
         + Send
         + Sync
         + 'static,
 {
     let pairs = &mut running.state.field.get_mut().pairs;
-    let inner = match std::mem::replace(pairs, Pairs::Reference) {
-        Pairs::Summed(sums) => Some(sums),
-        Pairs::Reference => None,
+    let inner = match std::mem::replace(pairs, PairSummation::Reference) {
+        PairSummation::Summed(sums) => Some(sums),
+        PairSummation::Reference => None,
     };
-    *pairs = Pairs::Summed(Box::new(Instead { inner, with }));
+    *pairs = PairSummation::Summed(Box::new(WrappedSums { inner, with }));
 }
 
 /// A failing sweep stops the run before a row is written; unknown values are NaN, not 0.
@@ -131,7 +143,7 @@ fn interrupted_steps_are_discarded() {
                 "run.thermo_every=2".to_owned(),
             ];
             let checked = scene_of(&sets);
-            let start = || begin(&checked, Purpose::Run).unwrap();
+            let start = || begin(&checked, StartPurpose::Run).unwrap();
             let mut whole = start();
             advance(&mut whole, 6).unwrap();
             for most in [0, 1, 5, 12, 40] {
@@ -170,12 +182,12 @@ fn interrupted_steps_are_discarded() {
     }
 }
 
-fn scene_of(sets: &[String]) -> Checked {
+fn scene_of(sets: &[String]) -> CheckedNbody {
     scene("plummer", &sets.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 /// Largest energy error during a run.
-fn largest_error(running: &mut Running, steps: u64) -> f64 {
+fn largest_error(running: &mut NbodySimulation, steps: u64) -> f64 {
     advance(running, steps).unwrap();
     running.summary()["largest_energy_error"].as_f64().unwrap().abs()
 }

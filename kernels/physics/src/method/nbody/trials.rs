@@ -2,12 +2,15 @@
 
 use super::checked::prepare;
 use super::keys::{ECCENTRICITY, ENGINE, INTEGRATOR, SOFTENING};
-use super::options::Engine;
+use super::options::ForceEngine;
 use super::schemes::SchemeName;
 use crate::method::trials::settings;
-use crate::method::{Axis, Balance, Decides, Length, Parameter, Prepared, Setting, Theory, Trials, Twin};
+use crate::method::{
+    AxisSetting, ChoiceEffect, DistanceUnit, EnergyBalanceNames, Parameter, Prepared, SettingAxis,
+    TheoreticalOrder, Trials, Twin,
+};
 use crate::particles::{Particle, Particles};
-use crate::scene::{DT, Overrides, PRECISION, Precision, Values};
+use crate::scene::{DT, Overrides, PRECISION, Precision, SceneValues};
 
 /// Trial configurations of bodies. Studies use the x-y plane, in which the orbits of two and three bodies lie.
 pub(super) static TRIALS: Trials = Trials {
@@ -16,11 +19,15 @@ pub(super) static TRIALS: Trials = Trials {
         &[("integrator", "yoshida-8"), ("precision", "f64")],
         &[("integrator", "gear-6"), ("precision", "f64")],
     ],
-    balance: Some(Balance { error: "balance_error", energies: &["kinetic", "potential"], inputs: &[] }),
+    balance: Some(EnergyBalanceNames {
+        error: "balance_error",
+        energies: &["kinetic", "potential"],
+        inputs: &[],
+    }),
     shadow: None,
     encounter: |_, _| None,
     has_trajectories: true,
-    length: Length { unit: "sizes of the system", of: size },
+    length: DistanceUnit { unit: "sizes of the system", of: size },
     has_contacts: false,
     observables: &["virial_ratio", "half_mass_radius"],
     fluctuating: &[],
@@ -33,10 +40,10 @@ pub(super) static TRIALS: Trials = Trials {
 /// Simplifications of a scene.
 pub(super) const TWINS: &[Twin] = &[];
 
-pub(super) const AXES: &[Axis] = &[
-    Axis {
+pub(super) const AXES: &[SettingAxis] = &[
+    SettingAxis {
         name: "integrator",
-        decides: Decides::Order,
+        decides: ChoiceEffect::Order,
         settings: settings! {
             "damped-euler" [INTEGRATOR = SchemeName::DampedEuler],
             "leapfrog" [INTEGRATOR = SchemeName::Leapfrog],
@@ -49,21 +56,21 @@ pub(super) const AXES: &[Axis] = &[
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
-    Axis {
+    SettingAxis {
         name: "precision",
-        decides: Decides::Digits,
+        decides: ChoiceEffect::Digits,
         settings: settings! {
             "f64" [PRECISION = Precision::F64],
             "mixed" [PRECISION = Precision::Mixed],
         },
         own: |prepared| setting_of(prepared, "precision"),
     },
-    Axis {
+    SettingAxis {
         name: "engine",
-        decides: Decides::Cost,
+        decides: ChoiceEffect::Cost,
         settings: settings! {
-            "fast" [ENGINE = Engine::Fast],
-            "reference" [ENGINE = Engine::Reference],
+            "fast" [ENGINE = ForceEngine::Fast],
+            "reference" [ENGINE = ForceEngine::Reference],
         },
         own: |prepared| setting_of(prepared, "engine"),
     },
@@ -97,7 +104,7 @@ fn setting_of(prepared: &Prepared, name: &str) -> Option<String> {
 }
 
 /// Order of the position error: that of the scheme, as the forces are smooth.
-fn theory(_: &Values, _: &Prepared, integrator: &Setting) -> Option<Theory> {
+fn theory(_: &SceneValues, _: &Prepared, integrator: &AxisSetting) -> Option<TheoreticalOrder> {
     let order = match integrator.name {
         "damped-euler" => 1.0,
         "leapfrog" => 2.0,
@@ -106,7 +113,7 @@ fn theory(_: &Values, _: &Prepared, integrator: &Setting) -> Option<Theory> {
         "gear-6" => 5.0,
         _ => 4.0,
     };
-    Some(Theory { order, why: "the order of the scheme" })
+    Some(TheoreticalOrder { order, why: "the order of the scheme" })
 }
 
 /// Root mean square distance of the bodies from their mean position at the start (length).

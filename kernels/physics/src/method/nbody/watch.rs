@@ -1,8 +1,8 @@
 //! Monitor of a run: largest energy error, and nearest encounter of two bodies.
 
-use super::conserved::Conserved;
-use super::encounter::Encounter;
-use crate::io::checkpoint::Column;
+use super::conserved::ConservedQuantities;
+use super::encounter::NearestPair;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::RunWarning;
 use crate::number::significant;
 use crate::observe::relative_energy_error;
@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// State of the monitor.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Watch {
+pub(super) struct EnergyMonitor {
     /// Energy at the start.
     pub(super) start: f64,
     /// Kinetic energy at the start, and its sum with the magnitude of the potential energy.
@@ -28,19 +28,19 @@ pub(super) struct Watch {
     /// Energy farthest from that at the start, and its step.
     worst: (f64, u64),
     /// Nearest encounter, and its step.
-    nearest: Option<(Encounter, u64)>,
+    nearest: Option<(NearestPair, u64)>,
 }
 
-impl Watch {
+impl EnergyMonitor {
     /// Starts the monitor.
-    pub(super) fn new(start: &Conserved) -> Watch {
+    pub(super) fn new(start: &ConservedQuantities) -> EnergyMonitor {
         let energy = start.energy();
         let (kinetic, size) = (start.kinetic, start.kinetic + start.potential.abs());
-        Watch { start: energy, kinetic, size, worst: (energy, 0), nearest: None }
+        EnergyMonitor { start: energy, kinetic, size, worst: (energy, 0), nearest: None }
     }
 
     /// Records a state after some steps.
-    pub(super) fn look(&mut self, energy: f64, encounter: Option<Encounter>, steps: u64) {
+    pub(super) fn look(&mut self, energy: f64, encounter: Option<NearestPair>, steps: u64) {
         if (energy - self.start).abs() > (self.worst.0 - self.start).abs() {
             self.worst = (energy, steps);
         }
@@ -60,7 +60,7 @@ impl Watch {
 
     /// Describes the nearest encounter; `id` gives the ids of bodies.
     pub(super) fn nearest_in_words(&self, id: impl Fn(usize) -> u32) -> Option<String> {
-        let (Encounter { bodies, distance, .. }, steps) = self.nearest?;
+        let (NearestPair { bodies, distance, .. }, steps) = self.nearest?;
         let [first, second] = bodies.map(id);
         let distance = significant(distance, 3);
         Some(format!("bodies {first} and {second} were the nearest, {distance} apart at step {steps}"))
@@ -92,7 +92,7 @@ impl Watch {
     /// Entries of the monitor for `summary.json`.
     pub(super) fn entries(&self, now: (f64, u64), id: impl Fn(usize) -> u32) -> [(&'static str, Value); 3] {
         let (energy, steps) = self.worst_with(now);
-        let nearest = self.nearest.map(|(Encounter { bodies, distance, place }, steps)| {
+        let nearest = self.nearest.map(|(NearestPair { bodies, distance, place }, steps)| {
             json!({ "bodies": bodies.map(&id), "distance": distance, "place": place, "step": steps })
         });
         [
@@ -108,15 +108,15 @@ impl Watch {
     }
 
     /// Columns for a checkpoint.
-    pub(super) fn columns(&self) -> [(String, Column); 2] {
+    pub(super) fn columns(&self) -> [(String, CheckpointColumn); 2] {
         let worst = vec![self.worst.0, self.worst.1 as f64];
         let nearest =
-            self.nearest.map(|(Encounter { bodies: [a, b], distance, place: [x, y, z] }, steps)| {
+            self.nearest.map(|(NearestPair { bodies: [a, b], distance, place: [x, y, z] }, steps)| {
                 vec![a as f64, b as f64, distance, x, y, z, steps as f64]
             });
         [
-            (WORST.to_owned(), Column::F64(worst)),
-            (NEAREST.to_owned(), Column::F64(nearest.unwrap_or_default())),
+            (WORST.to_owned(), CheckpointColumn::F64(worst)),
+            (NEAREST.to_owned(), CheckpointColumn::F64(nearest.unwrap_or_default())),
         ]
     }
 
@@ -127,11 +127,11 @@ impl Watch {
     pub(super) fn take_up(
         &mut self,
         start: f64,
-        columns: &[(String, Column)],
+        columns: &[(String, CheckpointColumn)],
         count: usize,
     ) -> Result<(), String> {
         let find = |name: &str| match columns.iter().find(|(there, _)| there == name) {
-            Some((_, Column::F64(values))) => Ok(values.as_slice()),
+            Some((_, CheckpointColumn::F64(values))) => Ok(values.as_slice()),
             _ => Err(format!("the column {name} is missing")),
         };
         let &[energy, steps] = find(WORST)? else {
@@ -141,7 +141,7 @@ impl Watch {
             [] => None,
             [a, b, distance, x, y, z, steps] if a.max(b) < count as f64 => {
                 let bodies = [a as usize, b as usize];
-                Some((Encounter { bodies, distance, place: [x, y, z] }, steps as u64))
+                Some((NearestPair { bodies, distance, place: [x, y, z] }, steps as u64))
             }
             _ => return Err(format!("the column {NEAREST} does not describe two bodies")),
         };

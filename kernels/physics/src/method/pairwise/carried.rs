@@ -1,11 +1,11 @@
 //! Form in which an integrator carries the state: queried here, assumed nowhere.
 
-use super::WithScheme;
+use super::SchemeTask;
 use stripmine_kernels::integrator::{DERIVATIVES, Scheme};
 
 /// Form in which an integrator carries the state from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Carried {
+pub(crate) struct CarriedState {
     /// Number of derivatives of a degree of freedom, including the position.
     pub derivatives: usize,
     /// Scale factor of each derivative, as in [`Scheme::scales`].
@@ -13,15 +13,15 @@ pub(crate) struct Carried {
 }
 
 /// Queries an integrator for its [`Carried`] form, for steps of `dt` (time).
-pub(crate) struct CarriedBy {
+pub(crate) struct CarriedQuery {
     /// The step (time).
     pub dt: f64,
 }
 
-impl WithScheme for CarriedBy {
-    type Output = Carried;
+impl SchemeTask for CarriedQuery {
+    type Output = CarriedState;
 
-    fn with<C: Scheme>(self, _: C) -> Carried {
-        Carried { derivatives: C::CARRIED, scales: C::scales(self.dt) }
+    fn with<C: Scheme>(self, _: C) -> CarriedState {
+        CarriedState { derivatives: C::CARRIED, scales: C::scales(self.dt) }
     }
 }

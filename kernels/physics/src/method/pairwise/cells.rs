@@ -1,25 +1,25 @@
 //! Cells of the discs: which discs change them, and when lists are rebuilt.
 
-use super::search::{Cells, Search};
-use super::state::Move;
-use super::{Engine, Named, conflict, outside};
-use crate::method::{Culprit, Failure};
+use super::search::{PairSearch, SearchCells};
+use super::state::CellMove;
+use super::{NameableDiscs, PairEngine, conflict, outside};
+use crate::method::{Culprit, PhysicsFailure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::over_pieces;
-use stripmine_kernels::sweep::fast::lattice::Taken;
-use stripmine_kernels::sweep::fast::{DisplacementLimit, Grid};
+use stripmine_kernels::sweep::fast::lattice::CellTaken;
+use stripmine_kernels::sweep::fast::{CellGrid, DisplacementLimit};
 
 /// Result of a search for cells: changes of cells, and discs that belong to no cell.
 #[derive(Default)]
-pub(super) struct Looked {
-    moves: Vec<Move>,
-    strays: Vec<Move>,
+pub(super) struct CellSearchResult {
+    moves: Vec<CellMove>,
+    strays: Vec<CellMove>,
 }
 
 /// Change of cell of a disc owned by this rank.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Moved {
+pub(super) struct CellChange {
     /// Number of the disc in the scene.
     pub(super) number: u32,
     /// Old and new row.
@@ -28,7 +28,7 @@ pub(super) struct Moved {
     pub(super) periods: [f64; 2],
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Returns a position (length) from one relative to a cell's centre.
     fn position_in_cell(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
         let frame = self.search.cells().grid().frame;
@@ -41,7 +41,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Returns the cell of a disc at a position (length), and the position relative to its centre.
-    pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<Move, Failure> {
+    pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<CellMove, PhysicsFailure> {
         let from = self.seen_from_first_cell(disc, position);
         self.in_its_cell(from).ok_or_else(|| self.stray(from, 1))
     }
@@ -52,16 +52,16 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Returns a disc at a position (length), relative to the first cell.
-    fn seen_from_first_cell(&self, disc: usize, position: [f64; 2]) -> Move {
+    fn seen_from_first_cell(&self, disc: usize, position: [f64; 2]) -> CellMove {
         let frame = self.search.cells().grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
-        Move { disc, cell: [0, 0], place, periods: [0.0; 2] }
+        CellMove { disc, cell: [0, 0], place, periods: [0.0; 2] }
     }
 
     /// Returns a disc relative to the cell that contains it, from a position that may be outside the given cell; none if no cell contains it.
-    fn in_its_cell(&self, from: Move) -> Option<Move> {
-        let Move { cell, place, .. } = from;
-        let Grid { frame, counts, periodic } = self.search.cells().grid();
+    fn in_its_cell(&self, from: CellMove) -> Option<CellMove> {
+        let CellMove { cell, place, .. } = from;
+        let CellGrid { frame, counts, periodic } = self.search.cells().grid();
         let mut to = from;
         for axis in 0..2 {
             let (edge, count) = (frame.edge[axis], counts[axis] as f64);
@@ -90,7 +90,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Updates the cells after a pass: walls, discs beyond their limit, halo, lists.
-    pub(super) fn keep_cells(&mut self, left: &[u32]) -> Result<(), Failure> {
+    pub(super) fn keep_cells(&mut self, left: &[u32]) -> Result<(), PhysicsFailure> {
         if self.search.lists().is_some() {
             if self.is_stale(left)? {
                 self.list_again()?;
@@ -101,7 +101,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Returns the current positions of moving walls.
-    fn walls_now(&mut self) -> Result<Vec<Move>, Failure> {
+    fn walls_now(&mut self) -> Result<Vec<CellMove>, PhysicsFailure> {
         let Some(prescribed) = self.prescribed() else { return Ok(vec![]) };
         self.give_walls_their_velocity();
         let now = |disc: usize| {
@@ -113,7 +113,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Updates the cells where there are no lists.
-    pub(super) fn keep_in_cells(&mut self, left: &[u32]) -> Result<Vec<Moved>, Failure> {
+    pub(super) fn keep_in_cells(&mut self, left: &[u32]) -> Result<Vec<CellChange>, PhysicsFailure> {
         let walls = self.walls_now()?;
         let left = left.iter().map(|&disc| disc as usize);
         let left = left.chain(self.neighbours().filter(|&disc| !self.stays_in_cell(disc)));
@@ -141,18 +141,18 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
 
     /// True if a disc may be outside the box and yet in a cell.
     fn reaches_beyond_box(&self) -> bool {
-        let Grid { frame, counts, .. } = self.search.cells().grid();
+        let CellGrid { frame, counts, .. } = self.search.cells().grid();
         let filled = |axis: usize| counts[axis] as f64 * frame.edge[axis];
         (0..2).any(|axis| filled(axis) > self.system.domain.length(axis) * (1.0 + 1e-12))
     }
 
     /// Failure of a disc outside all cells.
-    fn stray(&self, at: Move, count: u64) -> Failure {
+    fn stray(&self, at: CellMove, count: u64) -> PhysicsFailure {
         outside(self.clock(), count, self.culprit_at(&at))
     }
 
     /// Disc at a prospective position.
-    fn culprit_at(&self, at: &Move) -> Culprit {
+    fn culprit_at(&self, at: &CellMove) -> Culprit {
         let disc = at.disc;
         Culprit::in_plane(
             "disc",
@@ -163,11 +163,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Searches the cells that contain some discs.
-    pub(super) fn look(&self, discs: impl Iterator<Item = usize>) -> Looked {
-        let mut looked = Looked::default();
+    pub(super) fn look(&self, discs: impl Iterator<Item = usize>) -> CellSearchResult {
+        let mut looked = CellSearchResult::default();
         for disc in discs {
             let cell = self.search.cells().cell(disc).unwrap_or_default();
-            let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
+            let from = CellMove { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
             match self.in_its_cell(from) {
                 Some(to) if to == from => {}
                 Some(to) => looked.moves.push(to),
@@ -180,7 +180,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Returns the changes of cells, or a failure if a disc belongs to no cell.
-    pub(super) fn changes_of(&self, looked: Vec<Looked>) -> Result<Vec<Move>, Failure> {
+    pub(super) fn changes_of(&self, looked: Vec<CellSearchResult>) -> Result<Vec<CellMove>, PhysicsFailure> {
         let strays = || looked.iter().flat_map(|looked| &looked.strays);
         match strays().min_by_key(|from| self.state.number(from.disc)) {
             Some(&first) => Err(self.stray(first, strays().count() as u64)),
@@ -189,7 +189,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Moves walls within the cells in which they are listed; returns true if a disc has gone so far that lists must be rebuilt.
-    pub(super) fn is_stale(&mut self, left: &[u32]) -> Result<bool, Failure> {
+    pub(super) fn is_stale(&mut self, left: &[u32]) -> Result<bool, PhysicsFailure> {
         let walls = self.walls_now()?;
         let edge = self.search.cells().grid().frame.edge;
         let domain = self.system.domain;
@@ -212,13 +212,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             let count = self.boundary_candidates.iter().filter(outside).count() as u64;
             let cell = self.search.cells().cell(first as usize).unwrap_or_default();
             let place = self.state.place(first as usize);
-            return Err(self.stray(Move { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
+            return Err(self.stray(CellMove { disc: first as usize, cell, place, periods: [0.0; 2] }, count));
         }
         Ok(stale)
     }
 
     /// Rebuilds the lists.
-    pub(super) fn list_again(&mut self) -> Result<Vec<Moved>, Failure> {
+    pub(super) fn list_again(&mut self) -> Result<Vec<CellChange>, PhysicsFailure> {
         let looked = over_pieces(0..self.state.len(), |discs| self.look(discs));
         let moves = self.changes_of(looked)?;
         let moved = self.change_cells(&moves)?;
@@ -252,12 +252,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// True if a disc is beyond an open side.
     pub(super) fn is_outside(&self, disc: usize) -> bool {
         let cell = self.search.cells().cell(disc).unwrap_or_default();
-        let from = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
+        let from = CellMove { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
         self.in_its_cell(from).is_none()
     }
 
     /// Moves discs into their new cells and returns the changes of this rank's discs. If two discs want an exclusive cell, none is moved.
-    pub(super) fn change_cells(&mut self, moves: &[Move]) -> Result<Vec<Moved>, Failure> {
+    pub(super) fn change_cells(&mut self, moves: &[CellMove]) -> Result<Vec<CellChange>, PhysicsFailure> {
         if self.search.cells().is_exclusive() {
             self.refuse_conflicts(moves)?;
         }
@@ -266,7 +266,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         let moved = own.map(|to| {
             let from = self.search.cells().cell(to.disc).unwrap_or(to.cell);
             let number = self.state.number(to.disc) as u32;
-            Moved { number, rows: [from[1], to.cell[1]], periods: to.periods }
+            CellChange { number, rows: [from[1], to.cell[1]], periods: to.periods }
         });
         let moved = moved.collect();
         moves.iter().for_each(|to| self.search.cells_mut().leave(to.disc));
@@ -275,7 +275,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
                 self.elapsed.crossings.add(self.state.number(to.disc), to.periods);
             }
             self.state.put(to.disc, to.place);
-            if let Err(Taken(owner)) = self.search.cells_mut().enter(to, &self.state) {
+            if let Err(CellTaken(owner)) = self.search.cells_mut().enter(to, &self.state) {
                 // Conflicts are rejected above: a disc without a cell would silently interact with nothing.
                 let culprits = [self.culprit(owner), self.culprit_at(to)];
                 return Err(conflict(self.clock(), self.system.domain, culprits));
@@ -286,7 +286,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Fails if two discs want one cell.
-    fn refuse_conflicts(&self, moves: &[Move]) -> Result<(), Failure> {
+    fn refuse_conflicts(&self, moves: &[CellMove]) -> Result<(), PhysicsFailure> {
         let mut targets: Vec<([usize; 2], usize)> = moves.iter().map(|to| (to.cell, to.disc)).collect();
         targets.sort_unstable();
         let mut moving: Vec<usize> = moves.iter().map(|to| to.disc).collect();

@@ -1,87 +1,87 @@
 //! Loops compiled for each law and each scheme of a method. The engine calls them through one trait, so that the rest of it is compiled only once for
 //! each precision and search.
 
-use super::search::Search;
-use super::state::State;
-use super::{Carried, CarriedBy, Dynamics, Prescribed, System, WithLaw, WithScheme};
+use super::search::PairSearch;
+use super::state::MovingDiscs;
+use super::{CarriedQuery, CarriedState, Dynamics, LawTask, PairSystem, PrescribedMotion, SchemeTask};
 use std::marker::PhantomData;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Scheme;
 use stripmine_kernels::isa::{AlignedColumn, ProgramError};
-use stripmine_kernels::law::{Asked, Law};
-use stripmine_kernels::sweep::fast::{Advance, Discs, Met, Motion, Passed};
+use stripmine_kernels::law::{Law, ObservationRequest};
+use stripmine_kernels::sweep::fast::{Advance, DiscColumns, EquationOfMotion, PassReport, SweepReport};
 
 /// [`Dynamics`] of any method, for an engine with state of precision `S`, forces of precision `P` and search `Q`.
-pub(super) trait Compiled<S, P, Q>: Send + Sync {
+pub(super) trait CompiledDynamics<S, P, Q>: Send + Sync {
     /// Returns the form in which the scheme carries the state, for steps of `dt` (time).
-    fn carried(&self, dt: f64) -> Carried;
+    fn carried(&self, dt: f64) -> CarriedState;
 
     /// As [`Dynamics::prescribed`].
-    fn prescribed(&self, time: f64) -> Option<Prescribed>;
+    fn prescribed(&self, time: f64) -> Option<PrescribedMotion>;
 
     /// Advances some discs by one step.
-    fn pass(&self, pass: Passing<'_, S, P, Q>) -> Result<Passed, ProgramError>;
+    fn pass(&self, pass: PassArguments<'_, S, P, Q>) -> Result<PassReport, ProgramError>;
 
     /// Corrects a degree of freedom of some discs.
-    fn correct(&self, discs: Correcting<'_, S, P>);
+    fn correct(&self, discs: CorrectionArguments<'_, S, P>);
 
     /// Adds up the forces of all pairs.
-    fn sweep(&self, sweep: Sweeping<'_, S, P, Q>) -> Result<Met, ProgramError>;
+    fn sweep(&self, sweep: SweepArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError>;
 
     /// Observes all pairs.
-    fn observe(&self, sweep: Observing<'_, S, P, Q>) -> Result<Met, ProgramError>;
+    fn observe(&self, sweep: ObservationArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError>;
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>, D: Dynamics> Compiled<S, P, Q> for D {
-    fn carried(&self, dt: f64) -> Carried {
-        self.with_scheme(CarriedBy { dt })
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>, D: Dynamics> CompiledDynamics<S, P, Q> for D {
+    fn carried(&self, dt: f64) -> CarriedState {
+        self.with_scheme(CarriedQuery { dt })
     }
 
-    fn prescribed(&self, time: f64) -> Option<Prescribed> {
+    fn prescribed(&self, time: f64) -> Option<PrescribedMotion> {
         Dynamics::prescribed(self, time)
     }
 
-    fn pass(&self, pass: Passing<'_, S, P, Q>) -> Result<Passed, ProgramError> {
+    fn pass(&self, pass: PassArguments<'_, S, P, Q>) -> Result<PassReport, ProgramError> {
         self.with_scheme(pass)
     }
 
-    fn correct(&self, discs: Correcting<'_, S, P>) {
+    fn correct(&self, discs: CorrectionArguments<'_, S, P>) {
         self.with_scheme(discs);
     }
 
-    fn sweep(&self, sweep: Sweeping<'_, S, P, Q>) -> Result<Met, ProgramError> {
+    fn sweep(&self, sweep: SweepArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError> {
         self.with_law(sweep)
     }
 
-    fn observe(&self, sweep: Observing<'_, S, P, Q>) -> Result<Met, ProgramError> {
+    fn observe(&self, sweep: ObservationArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError> {
         self.with_law(sweep)
     }
 }
 
 /// Motion of discs in a scheme.
-fn motion<C: Scheme>(system: &System, scheme: C) -> Motion<C> {
-    let System { dt, inertia, gravity, noise, .. } = *system;
-    Motion { scheme, dt, inertia, gravity, noise }
+fn motion<C: Scheme>(system: &PairSystem, scheme: C) -> EquationOfMotion<C> {
+    let PairSystem { dt, inertia, gravity, noise, .. } = *system;
+    EquationOfMotion { scheme, dt, inertia, gravity, noise }
 }
 
 /// Arguments of a pass over some discs.
-pub(super) struct Passing<'a, S, P, Q> {
+pub(super) struct PassArguments<'a, S, P, Q> {
     pub(super) discs: Range<usize>,
-    pub(super) system: &'a System,
-    pub(super) state: &'a mut State<S>,
+    pub(super) system: &'a PairSystem,
+    pub(super) state: &'a mut MovingDiscs<S>,
     pub(super) sums: &'a mut [AlignedColumn<P>; 3],
     pub(super) search: &'a mut Q,
     pub(super) steps: u64,
     pub(super) set: InstructionSet,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, P, Q> {
-    type Output = Result<Passed, ProgramError>;
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SchemeTask for PassArguments<'_, S, P, Q> {
+    type Output = Result<PassReport, ProgramError>;
 
     fn with<C: Scheme>(self, scheme: C) -> Self::Output {
-        let Passing { discs, system, state, sums, search, steps, set } = self;
+        let PassArguments { discs, system, state, sums, search, steps, set } = self;
         let (columns, inverse, ids) = state.for_advance();
         let (limit, copies) = search.displacement_limit();
         let advance = Advance {
@@ -103,9 +103,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithScheme for Passing<'_, S, 
 }
 
 /// Arguments of the correction of a degree of freedom at the end of the step, from the rows left by the pass.
-pub(super) struct Correcting<'a, S, P> {
-    pub(super) system: &'a System,
-    pub(super) state: &'a State<S>,
+pub(super) struct CorrectionArguments<'a, S, P> {
+    pub(super) system: &'a PairSystem,
+    pub(super) state: &'a MovingDiscs<S>,
     pub(super) sums: &'a [P],
     pub(super) steps: u64,
     pub(super) freedom: usize,
@@ -113,11 +113,11 @@ pub(super) struct Correcting<'a, S, P> {
     pub(super) to: [&'a mut [f64]; 2],
 }
 
-impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
+impl<S: Precision, P: Precision> SchemeTask for CorrectionArguments<'_, S, P> {
     type Output = ();
 
     fn with<C: Scheme>(self, scheme: C) {
-        let Correcting { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
+        let CorrectionArguments { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
         let motion = motion(system, scheme);
         for (disc, (value, rate)) in (first..).zip(values.iter_mut().zip(rates)) {
             let force = S::from_f64(sums[disc].to_f64());
@@ -130,17 +130,17 @@ impl<S: Precision, P: Precision> WithScheme for Correcting<'_, S, P> {
 }
 
 /// Arguments of a force sweep.
-pub(super) struct Sweeping<'a, S, P, Q> {
-    pub(super) system: &'a System,
-    pub(super) state: &'a State<S>,
+pub(super) struct SweepArguments<'a, S, P, Q> {
+    pub(super) system: &'a PairSystem,
+    pub(super) state: &'a MovingDiscs<S>,
     pub(super) sums: &'a mut [AlignedColumn<P>; 3],
     pub(super) search: &'a mut Q,
-    pub(super) asked: Asked,
+    pub(super) asked: ObservationRequest,
     pub(super) set: InstructionSet,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P, Q> {
-    type Output = Result<Met, ProgramError>;
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> LawTask for SweepArguments<'_, S, P, Q> {
+    type Output = Result<SweepReport, ProgramError>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
         let sums = self.sums.each_mut().map(|sum| &mut **sum);
@@ -149,16 +149,16 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Sweeping<'_, S, P,
 }
 
 /// Arguments of an observing sweep.
-pub(super) struct Observing<'a, S, P, Q> {
+pub(super) struct ObservationArguments<'a, S, P, Q> {
     pub(super) search: &'a Q,
-    pub(super) discs: &'a Discs<'a, f64>,
+    pub(super) discs: &'a DiscColumns<'a, f64>,
     pub(super) moved: f64,
     pub(super) set: InstructionSet,
     pub(super) precisions: PhantomData<(S, P)>,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> WithLaw for Observing<'_, S, P, Q> {
-    type Output = Result<Met, ProgramError>;
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> LawTask for ObservationArguments<'_, S, P, Q> {
+    type Output = Result<SweepReport, ProgramError>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
         self.search.observe(&law, self.discs, self.moved, self.set)

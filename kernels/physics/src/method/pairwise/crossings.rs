@@ -2,7 +2,7 @@
 
 use super::real_column;
 use crate::domain::Domain;
-use crate::io::checkpoint::Column;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::restored::find_column;
 
 /// Number of periods each disc has crossed along x and y since the start, by its number in the scene. Counts are whole numbers, stored as doubles as
@@ -54,7 +54,7 @@ impl Crossings {
     }
 
     /// Returns the counts along each axis by name, for a checkpoint.
-    pub fn columns(&self) -> impl Iterator<Item = (String, Column)> {
+    pub fn columns(&self) -> impl Iterator<Item = (String, CheckpointColumn)> {
         let axes = (0..2).filter(|_| self.is_followed());
         axes.map(|axis| {
             (CROSSINGS[axis].to_owned(), real_column(self.counts.iter().map(move |count| count[axis])))
@@ -62,15 +62,17 @@ impl Crossings {
     }
 
     /// Returns the counts among the columns of a checkpoint.
-    pub fn among(columns: &[(String, Column)]) -> impl Iterator<Item = &(String, Column)> {
+    pub fn among(
+        columns: &[(String, CheckpointColumn)],
+    ) -> impl Iterator<Item = &(String, CheckpointColumn)> {
         columns.iter().filter(|(name, _)| CROSSINGS.contains(&name.as_str()))
     }
 
     /// Adds counts of 0 to the columns of a run without counts.
-    pub(crate) fn begin_in(columns: &mut Vec<(String, Column)>, discs: usize) {
+    pub(crate) fn begin_in(columns: &mut Vec<(String, CheckpointColumn)>, discs: usize) {
         for name in CROSSINGS {
             if !columns.iter().any(|(there, _)| there == name) {
-                columns.push((name.to_owned(), Column::F64(vec![0.0; discs])));
+                columns.push((name.to_owned(), CheckpointColumn::F64(vec![0.0; discs])));
             }
         }
     }
@@ -79,7 +81,7 @@ impl Crossings {
     ///
     /// # Errors
     /// Says which column is missing, has the wrong length, or holds a value that is not a count.
-    pub fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
+    pub fn take_up(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         let axes = if self.is_followed() { 0..2 } else { 0..0 };
         for axis in axes {
             let column = find_column::<f64>(columns, CROSSINGS[axis], self.counts.len())?;

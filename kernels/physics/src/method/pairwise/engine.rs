@@ -1,11 +1,13 @@
 //! Pairwise engine: computes all forces, then corrects and predicts in one pass.
 
-use super::compiled::{Compiled, Correcting, Passing, Sweeping};
-use super::search::{Cells, Search};
-use super::state::{Members, Move, State};
-use super::{Crossings, Elapsed, Named, Phase, Prescribed, Sort, System, not_finite};
+use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, SweepArguments};
+use super::search::{PairSearch, SearchCells};
+use super::state::{CellMove, Members, MovingDiscs};
+use super::{
+    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PrescribedMotion, SortSchedule, not_finite,
+};
 use crate::domain::Domain;
-use crate::method::{Clock, Failure};
+use crate::method::{Clock, PhysicsFailure};
 use crate::particles::Particles;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -14,8 +16,8 @@ use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{AlignedColumn, ProgramError};
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::{Met, Passed};
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::sweep::fast::{PassReport, SweepReport};
 use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
 
 /// Number of discs below which one thread does all the work, because a step is over before other threads start. Measured on two cores: 2000 discs
@@ -23,19 +25,19 @@ use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
 const FEW: usize = 5000;
 
 /// Dynamics, system, and the instruction set of their loops.
-pub(super) type Ingredients<S, P, Q> = (Arc<dyn Compiled<S, P, Q>>, System, InstructionSet);
+pub(super) type EngineParts<S, P, Q> = (Arc<dyn CompiledDynamics<S, P, Q>>, PairSystem, InstructionSet);
 
 /// First alignment number of the sums; columns of the state have smaller ones.
 const SUMS_FROM: usize = 24;
 
 /// Discs with state of precision `S`, forces of precision `P` and search `Q`.
-pub(crate) struct Engine<S, P, Q> {
-    pub(super) dynamics: Arc<dyn Compiled<S, P, Q>>,
-    pub(super) system: System,
+pub(crate) struct PairEngine<S, P, Q> {
+    pub(super) dynamics: Arc<dyn CompiledDynamics<S, P, Q>>,
+    pub(super) system: PairSystem,
     pub(super) set: InstructionSet,
     /// All particles of the scene at its start.
     pub(super) start: Arc<Particles>,
-    pub(super) state: State<S>,
+    pub(super) state: MovingDiscs<S>,
     /// Force along x, along y, torque.
     pub(super) sums: [AlignedColumn<P>; 3],
     /// Scratch column, swapped with one of the sums when discs are sorted.
@@ -52,29 +54,30 @@ pub(crate) struct Engine<S, P, Q> {
     pub(super) elapsed: Elapsed,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Places `particles`. Their forces are unknown until [`compute_forces`](super::Stepping::compute_forces).
     ///
     /// # Errors
     /// [`Failure`] if a disc is outside the box, or in an occupied cell.
     pub(super) fn new(
-        dynamics: Arc<dyn Compiled<S, P, Q>>,
-        system: System,
+        dynamics: Arc<dyn CompiledDynamics<S, P, Q>>,
+        system: PairSystem,
         search: Q,
         set: InstructionSet,
         particles: Particles,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, PhysicsFailure> {
         let members = Members::all(&particles);
         let crossings = Crossings::new(system.followed, particles.len());
         let elapsed = Elapsed::new(system.dt, crossings);
-        let mut engine = Engine::of((dynamics, system, set), search, Arc::new(particles), members, elapsed);
+        let mut engine =
+            PairEngine::of((dynamics, system, set), search, Arc::new(particles), members, elapsed);
         engine.take_their_places()?;
         Ok(engine)
     }
 
     /// Builds an engine of some of the particles of a scene, not yet in cells.
     pub(super) fn of(
-        (dynamics, system, set): Ingredients<S, P, Q>,
+        (dynamics, system, set): EngineParts<S, P, Q>,
         search: Q,
         start: Arc<Particles>,
         members: Members,
@@ -82,8 +85,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     ) -> Self {
         let carried = dynamics.carried(system.dt);
         let [sums @ .., spare] = sums_of(members.numbers.len());
-        let mut engine = Engine {
-            state: State::new(&system, &carried, &start, members),
+        let mut engine = PairEngine {
+            state: MovingDiscs::new(&system, &carried, &start, members),
             sums,
             spare,
             elapsed,
@@ -105,7 +108,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     pub(super) fn hold(&mut self, members: Members, search: Q) {
         let carried = self.dynamics.carried(self.system.dt);
         [self.sums[0], self.sums[1], self.sums[2], self.spare] = sums_of(members.numbers.len());
-        self.state = State::new(&self.system, &carried, &self.start, members);
+        self.state = MovingDiscs::new(&self.system, &carried, &self.start, members);
         self.search = search;
         self.changes = 0;
         self.awaits_forces = false;
@@ -117,12 +120,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub(super) fn take_their_places(&mut self) -> Result<(), Failure> {
-        let located = |discs: Range<usize>| -> Result<Vec<Move>, Failure> {
+    pub(super) fn take_their_places(&mut self) -> Result<(), PhysicsFailure> {
+        let located = |discs: Range<usize>| -> Result<Vec<CellMove>, PhysicsFailure> {
             discs.map(|disc| self.locate(disc, self.start.all()[self.state.number(disc)].place())).collect()
         };
         let moves = alone_if(self.is_small(), || over_parts(0..self.state.len(), located));
-        let moves: Vec<Vec<Move>> = moves.into_iter().collect::<Result<_, _>>()?;
+        let moves: Vec<Vec<CellMove>> = moves.into_iter().collect::<Result<_, _>>()?;
         self.change_cells(&moves.concat())?;
         self.put_in_order();
         Ok(())
@@ -134,7 +137,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Returns the prescribed motion of discs that no force moves, if they move.
-    pub(super) fn prescribed(&self) -> Option<Prescribed> {
+    pub(super) fn prescribed(&self) -> Option<PrescribedMotion> {
         self.dynamics.prescribed(self.elapsed.time())
     }
 
@@ -166,7 +169,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         order
     }
 
-    pub(super) fn moved_on(&mut self) -> Result<Vec<u32>, Failure> {
+    pub(super) fn moved_on(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
         self.put_in_order_if_due();
         let passed = self.pass(0..self.state.moving())?;
         self.has_passed();
@@ -179,7 +182,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
 
     /// Sorts the discs if many have changed cells since the last sort.
     pub(super) fn put_in_order_if_due(&mut self) {
-        if self.system.sort == Sort::EveryStep || self.changes > self.state.grains() / 4 {
+        if self.system.sort == SortSchedule::EveryStep || self.changes > self.state.grains() / 4 {
             let mut timings = self.elapsed.timings;
             timings.time(Phase::Index, || _ = self.put_in_order());
             self.elapsed.timings = timings;
@@ -187,11 +190,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Advances some discs by one step; their cells are updated later.
-    pub(super) fn pass(&mut self, discs: Range<usize>) -> Result<Passed, ProgramError> {
+    pub(super) fn pass(&mut self, discs: Range<usize>) -> Result<PassReport, ProgramError> {
         let begun = Instant::now();
-        let Engine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
+        let PairEngine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
         let steps = elapsed.steps;
-        let passed = dynamics.pass(Passing { discs, system, state, sums, search, steps, set: *set });
+        let passed = dynamics.pass(PassArguments { discs, system, state, sums, search, steps, set: *set });
         elapsed.timings.add(Phase::CorrectPredict, begun.elapsed().as_secs_f64());
         passed
     }
@@ -202,15 +205,15 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         self.awaits_forces = true;
     }
 
-    pub(super) fn add_forces(&mut self, asked: Asked) -> Result<Met, ProgramError> {
-        let Engine { dynamics, system, state, sums, search, set, .. } = self;
+    pub(super) fn add_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, ProgramError> {
+        let PairEngine { dynamics, system, state, sums, search, set, .. } = self;
         // Sums of owned discs are zero already.
         sums.iter_mut().for_each(|sum| sum[state.moving()..].fill(P::default()));
-        dynamics.sweep(Sweeping { system, state, sums, search, asked, set: *set })
+        dynamics.sweep(SweepArguments { system, state, sums, search, asked, set: *set })
     }
 
     /// Fails at pairs with a grain whose force is not finite.
-    pub(super) fn refuse_not_finite(&self, met: &Met) -> Result<(), Failure> {
+    pub(super) fn refuse_not_finite(&self, met: &SweepReport) -> Result<(), PhysicsFailure> {
         let grains = self.state.grains();
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
         // Two fixed discs have no effective mass: their force is meaningless.
@@ -233,14 +236,14 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
 
     /// Computes a degree of freedom and its rate for discs from `first` on at the end of the step. The state is not changed.
     pub(super) fn correct(&self, freedom: usize, first: usize, [values, rates]: [&mut [f64]; 2]) {
-        let Engine { system, state, sums, .. } = self;
+        let PairEngine { system, state, sums, .. } = self;
         let steps = self.elapsed.steps;
         let is_standing = steps == 0 || self.awaits_forces;
         let moving = if is_standing { 0 } else { state.moving() };
         let moving = moving.saturating_sub(first).min(values.len());
         let [(values, others), (rates, rates_of_others)] =
             [values, rates].map(|column| column.split_at_mut(moving));
-        self.dynamics.correct(Correcting {
+        self.dynamics.correct(CorrectionArguments {
             system,
             state,
             sums: &sums[freedom],
@@ -255,7 +258,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Named for Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> NameableDiscs for PairEngine<S, P, Q> {
     fn clock(&self) -> Clock {
         self.elapsed.clock()
     }

@@ -1,15 +1,15 @@
 //! Pair forces of a law in double precision, for structure analysis.
 
-use super::WithLaw;
+use super::LawTask;
 use crate::structure::PairForces;
 use std::sync::Arc;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::pair::Pair;
 
 /// Builds pair forces of a law up to a distance (length).
-pub(crate) struct ToReach(pub f64);
+pub(crate) struct PairForcesTask(pub f64);
 
-impl WithLaw for ToReach {
+impl LawTask for PairForcesTask {
     type Output = PairForces;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> PairForces {

@@ -1,12 +1,12 @@
 //! Continuation of a run after particles were thrown out of the box.
 
-use super::Engine;
-use super::cells::Moved;
-use super::search::Search;
-use crate::method::Failure;
+use super::PairEngine;
+use super::cells::CellChange;
+use super::search::PairSearch;
+use crate::method::PhysicsFailure;
 use stripmine_kernels::backend::Precision;
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Returns the particles, by their numbers in the scene and rising, that belong to no cell or have a value that is not finite.
     pub(super) fn unfit_discs(&self) -> Vec<usize> {
         let is_finite = |disc: usize| {
@@ -25,7 +25,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     ///
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.
-    pub(super) fn settle_all(&mut self) -> Result<Vec<Moved>, Failure> {
+    pub(super) fn settle_all(&mut self) -> Result<Vec<CellChange>, PhysicsFailure> {
         let looked = self.look(0..self.state.len());
         let moves = self.changes_of(vec![looked])?;
         let moved = self.change_cells(&moves)?;

@@ -31,18 +31,18 @@ mod stepping;
 mod timings;
 mod unwrapped;
 
-pub(crate) use carried::{Carried, CarriedBy};
+pub(crate) use carried::{CarriedQuery, CarriedState};
 pub(crate) use columns::real_column;
-use compiled::Compiled;
+use compiled::CompiledDynamics;
 pub(super) use crossings::Crossings;
 pub use elapsed::Elapsed;
-pub(super) use engine::Engine;
-pub(crate) use forces::ToReach;
+pub(super) use engine::PairEngine;
+pub(crate) use forces::PairForcesTask;
 pub(super) use named::outside;
-pub(crate) use named::{Named, conflict, not_finite};
+pub(crate) use named::{NameableDiscs, conflict, not_finite};
 pub(super) use ranked::begin;
-pub(crate) use stepping::{Losing, Stepping, Work};
-pub use timings::{Halo, Phase, Timings};
+pub(crate) use stepping::{GravityWork, RemovableDiscs, SteppingDiscs};
+pub use timings::{HaloTraffic, Phase, Timings};
 pub(crate) use unwrapped::{unwrapped, wrapped};
 
 use crate::domain::Domain;
@@ -52,7 +52,7 @@ use stripmine_kernels::noise::NoiseSource;
 
 /// System of discs: what moves, and where.
 #[derive(Clone, Debug)]
-pub(crate) struct System {
+pub(crate) struct PairSystem {
     /// The box.
     pub domain: Domain,
     /// Time step (time).
@@ -78,12 +78,12 @@ pub(crate) struct System {
     /// Random numbers, for a scheme that draws some.
     pub noise: NoiseSource,
     /// Frequency of sorting.
-    pub sort: Sort,
+    pub sort: SortSchedule,
 }
 
 /// Frequency of sorting discs by cell. No sum depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sort {
+pub(crate) enum SortSchedule {
     /// As soon as a quarter of the discs has changed cells.
     WhenNeeded,
     /// At every step, as in LAN17.
@@ -93,20 +93,20 @@ pub(crate) enum Sort {
 /// Law and integrator that move discs.
 pub(crate) trait Dynamics: Send + Sync {
     /// Applies a task to the pair law.
-    fn with_law<W: WithLaw>(&self, work: W) -> W::Output;
+    fn with_law<W: LawTask>(&self, work: W) -> W::Output;
 
     /// Applies a task to the integrator.
-    fn with_scheme<W: WithScheme>(&self, work: W) -> W::Output;
+    fn with_scheme<W: SchemeTask>(&self, work: W) -> W::Output;
 
     /// Returns the prescribed motion of discs that no force moves at a time; none if they are at rest.
-    fn prescribed(&self, _time: f64) -> Option<Prescribed> {
+    fn prescribed(&self, _time: f64) -> Option<PrescribedMotion> {
         None
     }
 }
 
 /// Prescribed motion, the same for all discs that no force moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Prescribed {
+pub(crate) struct PrescribedMotion {
     /// Displacement from the start (length).
     pub(crate) displacement: [f64; 2],
     /// Velocity (length/time).
@@ -114,7 +114,7 @@ pub(crate) struct Prescribed {
 }
 
 /// Task for a law, generic over its compiled variants.
-pub(crate) trait WithLaw {
+pub(crate) trait LawTask {
     /// Result.
     type Output;
     /// Runs the task.
@@ -122,7 +122,7 @@ pub(crate) trait WithLaw {
 }
 
 /// Task for an integrator.
-pub(crate) trait WithScheme {
+pub(crate) trait SchemeTask {
     /// Result.
     type Output;
     /// Runs the task.

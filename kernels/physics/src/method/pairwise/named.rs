@@ -1,13 +1,13 @@
 //! Discs as failures name them, and the failures that several searches share.
 
 use crate::domain::Domain;
-use crate::method::{Clock, Culprit, Failure, FailureKind};
+use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
 use crate::number::significant;
 use crate::particles::in_plane;
 use std::ops::Range;
 
 /// Discs that failures can name, by their index in memory.
-pub(crate) trait Named {
+pub(crate) trait NameableDiscs {
     /// Progress of the simulation.
     fn clock(&self) -> Clock;
 
@@ -43,7 +43,7 @@ pub(crate) trait Named {
     }
 
     /// Failure of grains outside the box, if any.
-    fn beyond_box(&self) -> Option<Failure> {
+    fn beyond_box(&self) -> Option<PhysicsFailure> {
         let domain = self.domain();
         let beyond = || self.grains().filter(|&disc| !domain.contains(self.position(disc)));
         let first = self.culprit(beyond().min_by_key(|&disc| self.number(disc))?);
@@ -52,7 +52,7 @@ pub(crate) trait Named {
 }
 
 /// Failure of discs outside all cells: outside the box, or at a position that is not finite.
-pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
+pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> PhysicsFailure {
     match first.position.iter().all(|along| along.is_finite()) {
         true => out_of_box(at, count, first),
         false => not_finite(at, count, first),
@@ -60,23 +60,23 @@ pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> Failure {
 }
 
 /// Failure of discs that left the box.
-fn out_of_box(at: Clock, count: u64, first: Culprit) -> Failure {
+fn out_of_box(at: Clock, count: u64, first: Culprit) -> PhysicsFailure {
     let what = format!("{count} discs left the box, first {first}");
     let remedy = "a disc passed a wall or the time step is too large: use larger or stiffer wall discs, slower grains, or a \
                   smaller dt";
-    Failure::new(FailureKind::OUT_OF_BOX, what, remedy).at(at).of(count, [first])
+    PhysicsFailure::new(FailureKind::OUT_OF_BOX, what, remedy).at(at).of(count, [first])
 }
 
 /// Failure of discs whose position or force is not finite.
-pub(crate) fn not_finite(at: Clock, count: u64, first: Culprit) -> Failure {
+pub(crate) fn not_finite(at: Clock, count: u64, first: Culprit) -> PhysicsFailure {
     let what = format!("{count} discs have a position or force that is not finite, first {first}");
     let remedy =
         "the time step is too large for the stiffness or the damping: halve dt, or use fewer Gear values";
-    Failure::new(FailureKind::NOT_FINITE, what, remedy).at(at).of(count, [first])
+    PhysicsFailure::new(FailureKind::NOT_FINITE, what, remedy).at(at).of(count, [first])
 }
 
 /// Failure of two discs in one cell: the exclusive lattice would lose one.
-pub(crate) fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> Failure {
+pub(crate) fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2]) -> PhysicsFailure {
     let [first_place, second_place] = [first, second].map(|disc| in_plane(disc.position));
     let [dx, dy] = domain.displacement(first_place, second_place);
     let distance = dx.hypot(dy);
@@ -86,6 +86,6 @@ pub(crate) fn conflict(at: Clock, domain: Domain, [first, second]: [Culprit; 2])
     );
     let remedy = "the discs overlap too deeply (stiffen the contacts), or the cells are too large (set search.cell_edge \
                   towards the largest radius)";
-    let failure = Failure::new(FailureKind::CONFLICT, what, remedy).at(at).of(2, [first, second]);
+    let failure = PhysicsFailure::new(FailureKind::CONFLICT, what, remedy).at(at).of(2, [first, second]);
     failure.with([("distance", distance)])
 }

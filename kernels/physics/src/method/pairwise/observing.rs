@@ -9,20 +9,20 @@
 //! Positions are relative to the current cells or lists: a correction may move a disc slightly beyond its cell, by far less than the margin of the
 //! cells. No sum depends on the number of threads, the order in memory, or the history of the run.
 
-use super::compiled::Observing;
-use super::search::Search;
-use super::{Engine, Work};
-use crate::observe::{ContactSums, GrainSums, Scenery};
-use crate::particles::{Kind, Particle, Particles, in_space};
+use super::compiled::ObservationArguments;
+use super::search::PairSearch;
+use super::{GravityWork, PairEngine};
+use crate::observe::{ContactSums, GrainSums, SceneProperties};
+use crate::particles::{Particle, ParticleKind, Particles, in_space};
 use std::marker::PhantomData;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
-use stripmine_kernels::sweep::fast::{Discs, Met, SENTINELS};
+use stripmine_kernels::sweep::fast::{DiscColumns, SENTINELS, SweepReport};
 use stripmine_kernels::{alone_if, in_parts, in_pieces, over_parts};
 
 /// All discs at the end of a step, one entry for each disc in memory order, followed by sentinels.
-pub(super) struct Corrected {
+pub(super) struct CorrectedDiscs {
     pub(super) place: [Vec<f64>; 2],
     pub(super) velocity: [Vec<f64>; 2],
     /// Empty if discs do not rotate.
@@ -31,9 +31,9 @@ pub(super) struct Corrected {
     moved: f64,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Computes the discs at the end of the step.
-    pub(super) fn corrected_discs(&self) -> Corrected {
+    pub(super) fn corrected_discs(&self) -> CorrectedDiscs {
         alone_if(self.is_small(), || {
             let mut moved = [0.0; 2];
             let mut column = |freedom: usize| {
@@ -51,7 +51,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             };
             let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
             let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
-            Corrected { place: [x, y], velocity: [vx, vy], omega, moved: moved[0].hypot(moved[1]) }
+            CorrectedDiscs { place: [x, y], velocity: [vx, vy], omega, moved: moved[0].hypot(moved[1]) }
         })
     }
 
@@ -153,7 +153,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Computes the sums over the grains.
-    pub(super) fn grain_sums(&self, corrected: &Corrected, scenery: &Scenery, work: &Work<'_>) -> GrainSums {
+    pub(super) fn grain_sums(
+        &self,
+        corrected: &CorrectedDiscs,
+        scenery: &SceneProperties,
+        work: &GravityWork<'_>,
+    ) -> GrainSums {
         let discs = self.disc_of_each();
         alone_if(self.is_small(), || {
             sums_of_grains(self.start.grains(), (scenery, work), |number| {
@@ -163,21 +168,21 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Returns a disc at the end of the step.
-    pub(super) fn standing_disc(&self, corrected: &Corrected, disc: usize) -> Standing {
+    pub(super) fn standing_disc(&self, corrected: &CorrectedDiscs, disc: usize) -> StepEndDisc {
         let [place, velocity] = [&corrected.place, &corrected.velocity]
             .map(|columns| columns.each_ref().map(|along| along[disc]));
         let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
-        Standing { position: self.seen_from_origin(disc, place), velocity, omega }
+        StepEndDisc { position: self.seen_from_origin(disc, place), velocity, omega }
     }
 
     /// Computes the sums over the contacts.
-    pub(super) fn contact_sums(&self, corrected: &Corrected) -> ContactSums {
+    pub(super) fn contact_sums(&self, corrected: &CorrectedDiscs) -> ContactSums {
         let met = self.contacts_met(corrected);
         contact_sums(&met)
     }
 
     /// Sweeps all pairs at the end of the step.
-    pub(super) fn contacts_met(&self, corrected: &Corrected) -> Met {
+    pub(super) fn contacts_met(&self, corrected: &CorrectedDiscs) -> SweepReport {
         alone_if(self.is_small(), || {
             let (mut radius, mut inverse_mass) = (vec![], vec![]);
             if self.system.inertia == Inertia::Varying {
@@ -186,13 +191,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
                     for (at, (radius, inverse_mass)) in radius.iter_mut().zip(inverse_mass).enumerate() {
                         let disc = &self.start.all()[self.state.number(first + at)];
                         *radius = disc.radius;
-                        *inverse_mass = if disc.kind == Kind::Grain { 1.0 / disc.mass } else { 0.0 };
+                        *inverse_mass = if disc.kind == ParticleKind::Grain { 1.0 / disc.mass } else { 0.0 };
                     }
                 });
                 radius.extend([0.5 * self.system.reach; SENTINELS]);
                 inverse_mass.extend([1.0; SENTINELS]);
             }
-            let discs = Discs {
+            let discs = DiscColumns {
                 place: corrected.place.each_ref().map(Vec::as_slice),
                 velocity: corrected.velocity.each_ref().map(Vec::as_slice),
                 omega: &corrected.omega,
@@ -200,7 +205,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
                 radius: &radius,
                 inverse_mass: &inverse_mass,
             };
-            let observing = Observing {
+            let observing = ObservationArguments {
                 search: &self.search,
                 discs: &discs,
                 moved: corrected.moved,
@@ -209,20 +214,20 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
             };
             let met = self.dynamics.observe(observing);
             // Unreachable error: this law and this instruction set have run in every step.
-            met.unwrap_or_else(|_| Met { energy: [f64::NAN; 2], ..Met::default() })
+            met.unwrap_or_else(|_| SweepReport { energy: [f64::NAN; 2], ..SweepReport::default() })
         })
     }
 }
 
 /// Sums over the contacts of a sweep.
-pub(super) fn contact_sums(met: &Met) -> ContactSums {
-    let &Met { energy: [elastic, virial], contacts: count, deepest, .. } = met;
+pub(super) fn contact_sums(met: &SweepReport) -> ContactSums {
+    let &SweepReport { energy: [elastic, virial], contacts: count, deepest, .. } = met;
     ContactSums { count, elastic, virial, deepest }
 }
 
 /// Disc at the end of a step, its position consistent with the counted periods (length).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Standing {
+pub(super) struct StepEndDisc {
     pub(super) position: [f64; 2],
     pub(super) velocity: [f64; 2],
     pub(super) omega: f64,
@@ -231,15 +236,15 @@ pub(super) struct Standing {
 /// Sums over grains in the scene's order.
 pub(super) fn sums_of_grains(
     grains: &[Particle],
-    (scenery, work): (&Scenery, &Work<'_>),
-    standing: impl Fn(usize) -> Standing + Sync,
+    (scenery, work): (&SceneProperties, &GravityWork<'_>),
+    standing: impl Fn(usize) -> StepEndDisc + Sync,
 ) -> GrainSums {
     let has_gravity = scenery.gravity != [0.0; 2];
     let parts = over_parts(0..grains.len(), |numbers| {
         let mut sums = GrainSums::default();
         for number in numbers {
             let (grain, standing) = (&grains[number], standing(number));
-            let Standing { position, velocity, omega } = standing;
+            let StepEndDisc { position, velocity, omega } = standing;
             sums.add(scenery, grain, velocity, omega, || scenery.domain.wrapped(position));
             if has_gravity {
                 sums.gravity_work += work(number, grain, position);

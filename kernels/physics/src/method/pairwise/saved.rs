@@ -1,9 +1,9 @@
 //! Engine state as columns for checkpoints, in the order of the scene's discs.
 
-use super::search::{Cells, Search};
-use super::state::Move;
-use super::{Engine, real_column};
-use crate::io::checkpoint::Column;
+use super::search::{PairSearch, SearchCells};
+use super::state::CellMove;
+use super::{PairEngine, real_column};
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::restored::find_column;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
@@ -18,7 +18,7 @@ const LISTS_MADE: &str = "listed.made";
 
 /// Origin of a column of the discs.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Source {
+pub(super) enum ColumnSource {
     /// A derivative of a degree of freedom.
     State(usize, usize),
     /// The force along an axis, or the torque.
@@ -29,20 +29,20 @@ pub(super) enum Source {
     MadeAt(usize),
 }
 
-impl Source {
+impl ColumnSource {
     fn name(self) -> &'static str {
         match self {
-            Source::State(freedom, k) => STATE[freedom][k].label(),
-            Source::Sum(freedom) => SUMS[freedom],
-            Source::Cell(axis) => CELL[axis],
-            Source::MadeAt(axis) => MADE_AT[axis],
+            ColumnSource::State(freedom, k) => STATE[freedom][k].label(),
+            ColumnSource::Sum(freedom) => SUMS[freedom],
+            ColumnSource::Cell(axis) => CELL[axis],
+            ColumnSource::MadeAt(axis) => MADE_AT[axis],
         }
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Builds a column with an entry for each of some discs.
-    fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> Column {
+    fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> CheckpointColumn {
         let mut column = vec![T::default(); discs.len()];
         alone_if(self.is_small(), || {
             in_pieces(&mut column, |first, piece| {
@@ -53,20 +53,23 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Everything that the next step depends on, by name, in the scene's order.
-    pub(super) fn saved(&self) -> Vec<(String, Column)> {
+    pub(super) fn saved(&self) -> Vec<(String, CheckpointColumn)> {
         let mut columns = self.columns_of(&self.disc_of_each());
         columns.extend(self.columns_of_all());
         columns
     }
 
     /// Columns shared by all discs: the number of list builds, and the crossed periods.
-    pub(super) fn columns_of_all(&self) -> impl Iterator<Item = (String, Column)> {
-        let made = self.search.lists().map(|lists| (LISTS_MADE.to_owned(), Column::U64(vec![lists.made()])));
+    pub(super) fn columns_of_all(&self) -> impl Iterator<Item = (String, CheckpointColumn)> {
+        let made = self
+            .search
+            .lists()
+            .map(|lists| (LISTS_MADE.to_owned(), CheckpointColumn::U64(vec![lists.made()])));
         made.into_iter().chain(self.elapsed.crossings.columns())
     }
 
     /// Columns of values of each disc, with an entry for each of some discs.
-    pub(super) fn columns_of(&self, discs: &[u32]) -> Vec<(String, Column)> {
+    pub(super) fn columns_of(&self, discs: &[u32]) -> Vec<(String, CheckpointColumn)> {
         self.sources()
             .into_iter()
             .map(|source| (source.name().to_owned(), self.column_of(source, discs)))
@@ -74,27 +77,28 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     }
 
     /// Origins of the columns of the discs, in order.
-    pub(super) fn sources(&self) -> Vec<Source> {
+    pub(super) fn sources(&self) -> Vec<ColumnSource> {
         let state = self.state.columns.iter().enumerate();
-        let state = state.flat_map(|(freedom, rows)| (0..rows.len()).map(move |k| Source::State(freedom, k)));
+        let state =
+            state.flat_map(|(freedom, rows)| (0..rows.len()).map(move |k| ColumnSource::State(freedom, k)));
         let lists = if self.search.lists().is_some() { &[0, 1][..] } else { &[] };
-        let others = [0, 1, 2].map(Source::Sum).into_iter().chain([0, 1].map(Source::Cell));
-        state.chain(others).chain(lists.iter().map(|&axis| Source::MadeAt(axis))).collect()
+        let others = [0, 1, 2].map(ColumnSource::Sum).into_iter().chain([0, 1].map(ColumnSource::Cell));
+        state.chain(others).chain(lists.iter().map(|&axis| ColumnSource::MadeAt(axis))).collect()
     }
 
     /// Column of one origin.
-    pub(super) fn column_of(&self, source: Source, discs: &[u32]) -> Column {
+    pub(super) fn column_of(&self, source: ColumnSource, discs: &[u32]) -> CheckpointColumn {
         match source {
-            Source::State(freedom, k) => {
+            ColumnSource::State(freedom, k) => {
                 let column = &self.state.columns[freedom][k];
                 self.column(discs, |disc| column[disc])
             }
-            Source::Sum(freedom) => self.column(discs, |disc| self.sums[freedom][disc]),
-            Source::Cell(axis) => {
+            ColumnSource::Sum(freedom) => self.column(discs, |disc| self.sums[freedom][disc]),
+            ColumnSource::Cell(axis) => {
                 let cell = |disc| self.search.cells().cell(disc);
                 self.column(discs, |disc| cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64))
             }
-            Source::MadeAt(axis) => {
+            ColumnSource::MadeAt(axis) => {
                 let made_at = self.search.lists().map_or(&[][..], |lists| lists.made_at(axis));
                 self.column(discs, |disc| made_at[disc])
             }
@@ -105,11 +109,17 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     ///
     /// # Errors
     /// Says why, if the columns are not those of these discs.
-    pub(super) fn take_up(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+    pub(super) fn take_up(
+        &mut self,
+        steps: u64,
+        columns: &[(String, CheckpointColumn)],
+    ) -> Result<(), String> {
         let numbers = self.state.numbers().to_vec();
         let made = match (self.search.lists(), columns.iter().find(|(name, _)| name == LISTS_MADE)) {
             (None, _) => 0,
-            (Some(_), Some((_, Column::U64(made)))) if made.len() == 1 && made[0] < 1 << 53 => made[0],
+            (Some(_), Some((_, CheckpointColumn::U64(made)))) if made.len() == 1 && made[0] < 1 << 53 => {
+                made[0]
+            }
             _ => return Err(format!("the column {LISTS_MADE} is missing or not a count")),
         };
         self.elapsed.crossings.take_up(columns)?;
@@ -126,11 +136,11 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
     /// As [`take_up`](Self::take_up).
     pub(super) fn take_up_discs(
         &mut self,
-        columns: &[(String, Column)],
+        columns: &[(String, CheckpointColumn)],
         entries: Vec<u32>,
         length: usize,
     ) -> Result<(), String> {
-        let in_order = Entries { columns, entries, length };
+        let in_order = OrderedEntries { columns, entries, length };
         for (names, rows) in STATE.iter().zip(&mut self.state.columns) {
             for (name, column) in names.iter().zip(rows) {
                 let values = in_order.of::<S>(name.label())?;
@@ -155,7 +165,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
         (0..self.state.len()).for_each(|disc| self.search.cells_mut().leave(disc));
         for (disc, (&column, &row)) in cells[0].iter().zip(&cells[1]).enumerate() {
             let cell = [column as usize, row as usize];
-            let to = Move { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
+            let to = CellMove { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
             let entered = self.search.cells_mut().enter(&to, &self.state);
             entered.map_err(|_| "two discs are in one cell".to_owned())?;
         }
@@ -178,13 +188,13 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Engine<S, P, Q> {
 }
 
 /// Columns, with the entry of each disc in memory.
-struct Entries<'c> {
-    columns: &'c [(String, Column)],
+struct OrderedEntries<'c> {
+    columns: &'c [(String, CheckpointColumn)],
     entries: Vec<u32>,
     length: usize,
 }
 
-impl Entries<'_> {
+impl OrderedEntries<'_> {
     /// Returns the named column in the order of the discs in memory.
     fn of<T: Element>(&self, name: &str) -> Result<Vec<T>, String> {
         let values = find_column::<T>(self.columns, name, self.length)?;

@@ -1,7 +1,7 @@
 //! State of the discs: columns in the order of their cells, positions relative to the cells' centres.
 
-use super::{Carried, System};
-use crate::particles::{Kind, Particle, Particles};
+use super::{CarriedState, PairSystem};
+use crate::particles::{Particle, ParticleKind, Particles};
 use std::cell::Cell;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
@@ -12,7 +12,7 @@ use stripmine_kernels::{in_pieces, put_in_order, reordered};
 
 /// Change of cell of a disc, its position relative to the new centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Move {
+pub(crate) struct CellMove {
     pub disc: usize,
     pub cell: [usize; 2],
     pub place: [f64; 2],
@@ -41,7 +41,7 @@ impl Members {
 /// Columns with an entry for each disc, grains first, followed by two sentinels that touch nothing. They start at different cache lines in large
 /// pages: a pass over a million discs takes a fifth less time than over vectors, which all start at page borders.
 #[derive(Clone, Debug)]
-pub(crate) struct State<S> {
+pub(crate) struct MovingDiscs<S> {
     /// Carried derivatives of each degree of freedom, scaled by the scheme.
     pub(super) columns: Vec<Vec<AlignedColumn<S>>>,
     /// Scale factor of velocities in the columns.
@@ -62,14 +62,19 @@ pub(crate) struct State<S> {
 }
 
 /// Arguments of a pass: columns, inverse masses and moments of inertia, and ids.
-type Moved<'a, S> = (&'a mut [Vec<AlignedColumn<S>>], [&'a [S]; 2], &'a [u32]);
+type PassColumns<'a, S> = (&'a mut [Vec<AlignedColumn<S>>], [&'a [S]; 2], &'a [u32]);
 
 /// Derivatives of each degree of freedom that a sweep reads.
 const SWEPT: [Range<usize>; 3] = [0..2, 0..2, 1..2];
 
-impl<S: Precision> State<S> {
+impl<S: Precision> MovingDiscs<S> {
     /// State of the members of `particles`, in the form that the scheme carries from step to step.
-    pub(crate) fn new(system: &System, carried: &Carried, particles: &Particles, members: Members) -> Self {
+    pub(crate) fn new(
+        system: &PairSystem,
+        carried: &CarriedState,
+        particles: &Particles,
+        members: Members,
+    ) -> Self {
         let velocity_scale = carried.scales[1];
         let Members { numbers: discs, moving, grains } = members;
         // The thread that fills a piece touches its memory first.
@@ -100,14 +105,15 @@ impl<S: Precision> State<S> {
         let (mut radius, mut inverse) =
             (AlignedColumn::default(), [(); 2].map(|()| AlignedColumn::default()));
         if system.inertia == Inertia::Varying {
-            let of_grain = |disc: &Particle, value: f64| if disc.kind == Kind::Wall { 0.0 } else { value };
+            let of_grain =
+                |disc: &Particle, value: f64| if disc.kind == ParticleKind::Wall { 0.0 } else { value };
             let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
             radius = column(&|disc| disc.radius, largest);
             inverse[0] = column(&|disc| of_grain(disc, 1.0 / disc.mass), 1.0);
             let inertia = |disc: &Particle| system.inertia_factor * disc.mass * disc.radius * disc.radius;
             inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
         }
-        State {
+        MovingDiscs {
             columns,
             velocity_scale,
             alike: system.radius,
@@ -212,14 +218,14 @@ impl<S: Precision> State<S> {
     }
 
     /// Returns the arguments of a pass.
-    pub(crate) fn for_advance(&mut self) -> Moved<'_, S> {
+    pub(crate) fn for_advance(&mut self) -> PassColumns<'_, S> {
         (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.ids)
     }
 
     /// Discs as a sweep reads them.
-    pub(crate) fn discs(&self, system: &System) -> fast::Discs<'_, S> {
+    pub(crate) fn discs(&self, system: &PairSystem) -> fast::DiscColumns<'_, S> {
         let omega = if system.freedoms == 3 { &*self.columns[2][1] } else { &[] };
-        fast::Discs {
+        fast::DiscColumns {
             place: self.places(),
             velocity: [&self.columns[0][1], &self.columns[1][1]],
             omega,

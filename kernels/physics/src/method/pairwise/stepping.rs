@@ -1,40 +1,40 @@
 //! Interface of stepped discs for methods, whether one engine, several ranks or vector programs step them.
 
-use super::search::{Cells, Search};
-use super::{Elapsed, Engine, Named, Phase, wrapped};
-use crate::io::checkpoint::Column;
-use crate::method::{Failure, PerParticle, SteppedState};
-use crate::observe::{Scenery, Sums};
-use crate::particles::{Particle, Particles, States};
+use super::search::{PairSearch, SearchCells};
+use super::{Elapsed, NameableDiscs, PairEngine, Phase, wrapped};
+use crate::io::checkpoint::CheckpointColumn;
+use crate::method::{PerParticle, PhysicsFailure, SteppedState};
+use crate::observe::{ObservationSums, SceneProperties};
+use crate::particles::{GrainStates, Particle, Particles};
 use stripmine_kernels::alone_if;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::ledger::{Ledger, Length};
-use stripmine_kernels::sweep::fast::Met;
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::ledger::{Ledger, VectorLength};
+use stripmine_kernels::sweep::fast::SweepReport;
 
 /// Work of gravity on a grain, given its number in the scene and its position.
-pub(crate) type Work<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
+pub(crate) type GravityWork<'w> = dyn Fn(usize, &Particle, [f64; 2]) -> f64 + Sync + 'w;
 
 /// Discs that are stepped.
-pub(crate) trait Stepping: Named + PerParticle + Send {
+pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
     /// Predicts the next step, after the correction of the last one, and updates the cells. Returns the discs that moved so far that contacts may be
     /// missed, or whose speed is not a number.
     ///
     /// # Errors
     /// [`Failure`] if a disc left the box or entered an occupied cell.
-    fn advance(&mut self) -> Result<Vec<u32>, Failure>;
+    fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure>;
 
     /// Computes all forces at the current positions.
     ///
     /// # Errors
     /// [`Failure`] if a force is not finite, or the machine rejects the law.
-    fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure>;
+    fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure>;
 
     /// Completes the step after its forces are checked, if the corrector waits for it.
     ///
     /// # Errors
     /// [`Failure`] if a correction is not finite.
-    fn finish(&mut self) -> Result<(), Failure> {
+    fn finish(&mut self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 
@@ -65,7 +65,7 @@ pub(crate) trait Stepping: Named + PerParticle + Send {
     ///
     /// # Errors
     /// As there.
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 
@@ -73,18 +73,18 @@ pub(crate) trait Stepping: Named + PerParticle + Send {
     fn end(&mut self) {}
 
     /// Everything that the next step depends on, by name.
-    fn columns(&self) -> Vec<(String, Column)>;
+    fn columns(&self) -> Vec<(String, CheckpointColumn)>;
 
     /// Restores columns of a moment after a number of steps.
     ///
     /// # Errors
     /// Says why, if they are not those of this engine and scene.
-    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String>;
+    fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String>;
 
     /// Sums over the grains and their contacts at the end of the step. `work` returns the work of gravity on a grain (by its number in the scene) at
     /// a position (length) that is consistent with the counted periods; it is called only with gravity.
-    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
-        Sums::over_parts(&self.unwrapped(), scenery, work)
+    fn sums(&self, scenery: &SceneProperties, work: &GravityWork<'_>) -> ObservationSums {
+        ObservationSums::over_parts(&self.unwrapped(), scenery, work)
     }
 
     /// Operations of a step; empty if its work depends on the data, contact by contact.
@@ -93,13 +93,13 @@ pub(crate) trait Stepping: Named + PerParticle + Send {
     }
 
     /// Vector length of a symbolic length in the last step, unless it follows from the discs and the lattice.
-    fn length(&self, _length: Length) -> Option<u64> {
+    fn length(&self, _length: VectorLength) -> Option<u64> {
         None
     }
 }
 
 /// Discs that can be removed during a run.
-pub(crate) trait Losing: Stepping {
+pub(crate) trait RemovableDiscs: SteppingDiscs {
     /// Velocities left by the last predictor (length/time), in the scene's order; at the start the initial ones.
     fn predicted_velocities(&self) -> Vec<[f64; 2]>;
 
@@ -107,7 +107,7 @@ pub(crate) trait Losing: Stepping {
     ///
     /// # Errors
     /// [`Failure`] if particles cannot be redistributed to their ranks.
-    fn skip_forces(&mut self) -> Result<(), Failure>;
+    fn skip_forces(&mut self) -> Result<(), PhysicsFailure>;
 
     /// Returns the particles, by their numbers in the scene and rising, that belong to no cell or have a value that is not finite.
     fn unfit(&self) -> Vec<usize>;
@@ -116,15 +116,15 @@ pub(crate) trait Losing: Stepping {
     ///
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.
-    fn settle(&mut self) -> Result<(), Failure>;
+    fn settle(&mut self) -> Result<(), PhysicsFailure>;
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> PerParticle for Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PerParticle for PairEngine<S, P, Q> {
     fn particles(&self) -> Particles {
         wrapped(self.unwrapped(), &self.system.domain)
     }
 
-    fn states(&self, states: &mut States) {
+    fn states(&self, states: &mut GrainStates) {
         self.each_standing(0..self.start.len(), |disc, place, velocity| {
             states.put(self.state.number(disc), self.system.domain.wrapped(place), velocity);
         });
@@ -139,12 +139,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> PerParticle for Engine<S, P, Q
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Stepping for Engine<S, P, Q> {
-    fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngine<S, P, Q> {
+    fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
         alone_if(self.is_small(), || self.moved_on())
     }
 
-    fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure> {
+    fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
         let mut timings = self.elapsed.timings;
         let met = timings.time(Phase::Forces, || alone_if(self.is_small(), || self.add_forces(asked)))?;
         self.elapsed.timings = timings;
@@ -185,29 +185,29 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Stepping for Engine<S, P, Q> {
         forces
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         self.saved()
     }
 
-    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+    fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         self.take_up(steps, columns)
     }
 
-    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
+    fn sums(&self, scenery: &SceneProperties, work: &GravityWork<'_>) -> ObservationSums {
         let corrected = self.corrected_discs();
         let grains = self.grain_sums(&corrected, scenery, work);
-        Sums { grains, contacts: self.contact_sums(&corrected) }
+        ObservationSums { grains, contacts: self.contact_sums(&corrected) }
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Losing for Engine<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RemovableDiscs for PairEngine<S, P, Q> {
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {
         let mut velocities = vec![[0.0; 2]; self.start.len()];
         (0..velocities.len()).for_each(|disc| velocities[self.state.number(disc)] = self.velocity(disc));
         velocities
     }
 
-    fn skip_forces(&mut self) -> Result<(), Failure> {
+    fn skip_forces(&mut self) -> Result<(), PhysicsFailure> {
         self.awaits_forces = false;
         Ok(())
     }
@@ -216,12 +216,12 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Losing for Engine<S, P, Q> {
         self.unfit_discs()
     }
 
-    fn settle(&mut self) -> Result<(), Failure> {
+    fn settle(&mut self) -> Result<(), PhysicsFailure> {
         self.settle_all().map(drop)
     }
 }
 
-impl SteppedState for Box<dyn Losing> {
+impl SteppedState for Box<dyn RemovableDiscs> {
     fn elapsed(&self) -> &Elapsed {
         self.as_ref().elapsed()
     }
@@ -230,11 +230,11 @@ impl SteppedState for Box<dyn Losing> {
         self.as_ref()
     }
 
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         self.as_ref().check_ranks()
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         self.as_ref().columns()
     }
 }

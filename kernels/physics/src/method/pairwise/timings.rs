@@ -35,12 +35,12 @@ define_phases! {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timings {
     seconds: [f64; Phase::ALL.len()],
-    halo: Halo,
+    halo: HaloTraffic,
 }
 
 /// Traffic that a rank sends about discs near other ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Halo {
+pub struct HaloTraffic {
     /// Number of messages.
     pub messages: u64,
     /// Total size in bytes.
@@ -62,7 +62,7 @@ impl Timings {
     }
 
     /// Traffic to other ranks.
-    pub fn halo(&self) -> Halo {
+    pub fn halo(&self) -> HaloTraffic {
         self.halo
     }
 

@@ -4,15 +4,15 @@ use crate::sweep::lattice::LatticeShape;
 
 /// Bits by position in the padded lattice.
 #[derive(Clone, Debug)]
-pub(super) struct Bits(Vec<u64>);
+pub(super) struct CellBits(Vec<u64>);
 
-impl Bits {
+impl CellBits {
     /// No bit set.
     #[inline]
     pub(super) fn new(shape: &LatticeShape, half_width: usize) -> Self {
         // Reads from the last cell reach this far.
         let last = shape.padded() + half_width * (shape.stride() + 1) + 64;
-        Bits(vec![0; last.div_ceil(64) + 2])
+        CellBits(vec![0; last.div_ceil(64) + 2])
     }
 
     #[inline]

@@ -3,13 +3,13 @@
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Precision;
-use crate::sweep::lattice::Frame;
+use crate::sweep::lattice::LatticeFrame;
 
 /// A pair of cells whose discs may touch: the first cell of the group in the high bits, offset and lane in the low ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Candidate(pub(super) u64);
+pub(super) struct PackedCandidate(pub(super) u64);
 
-impl Candidate {
+impl PackedCandidate {
     /// Bits of a code.
     pub(super) const CODE: u32 = 9;
 
@@ -67,7 +67,7 @@ pub struct Codes<P> {
 impl<P: Precision> Codes<P> {
     /// Tables for the lattice of an occupancy.
     #[inline]
-    pub fn new(occupancy: &Occupancy, frame: Frame) -> Self {
+    pub fn new(occupancy: &Occupancy, frame: LatticeFrame) -> Self {
         let stride = occupancy.shape().stride() as isize;
         let all = || codes(occupancy.half_width());
         Codes {
@@ -90,7 +90,7 @@ impl<P: Precision> Codes<P> {
 
     /// The two discs of a candidate, and the vector between their cells.
     #[inline(always)]
-    pub(super) fn pair(&self, candidate: Candidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
+    pub(super) fn pair(&self, candidate: PackedCandidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
         let (base, code) = (candidate.base(), candidate.code());
         // SAFETY: a code is offset·GROUP + lane, and the tables have an entry for each. The group and the cells at its offsets
         // are in the padded lattice or in the register of padding behind it, which the Index has too.

@@ -23,30 +23,30 @@
 //! - *Bits, not branches.* Results stay bits until the end. Candidates are appended four at a time, even if there are fewer,
 //!   because their number cannot be predicted.
 
-use super::codes::{Candidate, place, place_count};
+use super::codes::{PackedCandidate, place, place_count};
 use super::occupancy::Occupancy;
 use crate::GROUP;
+use crate::backend::RegisterTask;
 use crate::backend::Registers;
-use crate::backend::Task;
 use crate::isa::Vector;
-use crate::sweep::fast::finder::{Cursor, MARGIN};
+use crate::sweep::fast::finder::{MARGIN, SearchCursor};
 use std::ops::Range;
 
 /// Offsets of the mask whose results share a word: 16 cells each.
 const PLACES: usize = 64 / GROUP;
 
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
-pub(super) struct Search<'a> {
+pub(super) struct DenseSearch<'a> {
     pub(super) occupancy: &'a Occupancy,
     /// Factor on the square of the contact distance, in addition to the margin.
     pub(super) beyond: f64,
     pub(super) rows: Range<usize>,
-    pub(super) cursor: &'a mut Cursor,
+    pub(super) cursor: &'a mut SearchCursor,
     pub(super) full: usize,
-    pub(super) found: &'a mut Vec<Candidate>,
+    pub(super) found: &'a mut Vec<PackedCandidate>,
 }
 
-impl Task<f32> for Search<'_> {
+impl RegisterTask<f32> for DenseSearch<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f32>>(self, registers: R) {
         match (self.occupancy.half_width(), self.occupancy.radii().is_some()) {
@@ -64,10 +64,10 @@ const fn words(half_width: usize) -> usize {
     place_count(half_width).div_ceil(PLACES)
 }
 
-impl Search<'_> {
+impl DenseSearch<'_> {
     #[inline(always)]
     fn with<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(self, registers: R) {
-        let Search { occupancy, beyond, rows, cursor, full, found } = self;
+        let DenseSearch { occupancy, beyond, rows, cursor, full, found } = self;
         let limit = registers.splat((MARGIN * beyond) as f32);
         let shape = occupancy.shape();
         let stride = shape.stride();
@@ -104,12 +104,12 @@ impl Search<'_> {
                     };
                     for (word, near) in near.into_iter().take(const { words(H) }).enumerate() {
                         let own = own * 0x0001_0001_0001_0001;
-                        list(found, (base as u64) << Candidate::CODE | (word as u64) << 6, near & own);
+                        list(found, (base as u64) << PackedCandidate::CODE | (word as u64) << 6, near & own);
                     }
                 }
                 cursor.along += 1;
             }
-            *cursor = Cursor::at(cursor.row + 1);
+            *cursor = SearchCursor::at(cursor.row + 1);
         }
     }
 }
@@ -172,8 +172,8 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
 
 /// Appends a candidate for every bit, lowest first.
 #[inline(always)]
-fn list(found: &mut Vec<Candidate>, prefix: u64, bits: u64) {
-    append_bits(found, bits, |bit| Candidate(prefix | bit));
+fn list(found: &mut Vec<PackedCandidate>, prefix: u64, bits: u64) {
+    append_bits(found, bits, |bit| PackedCandidate(prefix | bit));
 }
 
 /// Appends `of(number)` for every set bit, lowest first.

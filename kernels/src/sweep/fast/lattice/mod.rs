@@ -21,18 +21,18 @@ mod occupancy;
 mod sparse;
 
 pub use codes::Codes;
-pub use occupancy::{Occupancy, SPARSE, Taken};
+pub use occupancy::{CellTaken, Occupancy, SPARSE};
 
-use super::finder::{AT_ONCE, Cursor, Finder, Rows};
-use super::grid::Grid;
-use super::pairs::{Pairs, SENTINELS, Touches};
+use super::finder::{AT_ONCE, Finder, RowLayout, SearchCursor};
+use super::grid::CellGrid;
+use super::pairs::{PairBuffer, PairSequence, SENTINELS};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch_native;
 use crate::isa::{Element, ProgramError};
 use crate::sweep::lattice::LatticeShape;
-use codes::Candidate;
-use detection::Search;
+use codes::PackedCandidate;
+use detection::DenseSearch;
 use sparse::SparseSearch;
 use std::ops::Range;
 
@@ -54,7 +54,7 @@ pub struct Lattice<'a, P> {
 /// Pairs found on a lattice.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
-    candidates: Vec<Candidate>,
+    candidates: Vec<PackedCandidate>,
     cells: Vec<u64>,
     /// The lattice on which they were found.
     shape: Option<LatticeShape>,
@@ -71,15 +71,15 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     }
 
     #[inline]
-    fn rows(&self) -> Rows {
-        Rows { count: self.occupancy.shape().rows(), ahead: self.occupancy.half_width(), band: BAND }
+    fn rows(&self) -> RowLayout {
+        RowLayout { count: self.occupancy.shape().rows(), ahead: self.occupancy.half_width(), band: BAND }
     }
 
     fn find(
         &self,
         places: [&[S]; 2],
         rows: Range<usize>,
-        cursor: &mut Cursor,
+        cursor: &mut SearchCursor,
         found: &mut Candidates,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
@@ -101,15 +101,15 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
             )
         } else {
             let beyond = (1.0 + slack) * (1.0 + slack);
-            dispatch_native(set, Search { occupancy, beyond, rows, cursor, full: AT_ONCE, found })
+            dispatch_native(set, DenseSearch { occupancy, beyond, rows, cursor, full: AT_ONCE, found })
         }
     }
 
     /// Pairs each disc in a shared cell with all discs around it, and with the others in shared cells.
-    fn find_beside(&self, rows: Range<usize>, found: &mut Touches<P>) {
+    fn find_beside(&self, rows: Range<usize>, found: &mut PairBuffer<P>) {
         let occupancy = self.occupancy;
         let (shared, shape) = (occupancy.shared_cells(), occupancy.shape());
-        let Grid { frame, counts, periodic } = occupancy.grid();
+        let CellGrid { frame, counts, periodic } = occupancy.grid();
         let half = occupancy.half_width() as isize;
         let cell_offset = |offset: [isize; 2]| [0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis]);
         let those = shared.iter().enumerate().filter(|(_, (_, [_, row]))| rows.contains(row));
@@ -139,21 +139,21 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     }
 
     #[inline]
-    fn pairs<'a>(&'a self, found: &'a Candidates) -> impl Pairs<P> + 'a {
+    fn pairs<'a>(&'a self, found: &'a Candidates) -> impl PairSequence<P> + 'a {
         assert!(self.codes.are_of(self.occupancy), "the codes are those of another lattice");
         assert!(found.candidates.is_empty() || found.shape.as_ref() == Some(self.occupancy.shape()));
-        Packed { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
+        PackedPairs { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
     }
 }
 
 /// Candidates with the tables that decode them.
-struct Packed<'a, P> {
+struct PackedPairs<'a, P> {
     codes: &'a Codes<P>,
     index: &'a [u32],
-    candidates: &'a [Candidate],
+    candidates: &'a [PackedCandidate],
 }
 
-impl<P: Precision> Pairs<P> for Packed<'_, P> {
+impl<P: Precision> PairSequence<P> for PackedPairs<'_, P> {
     #[inline(always)]
     fn count(&self) -> usize {
         self.candidates.len()

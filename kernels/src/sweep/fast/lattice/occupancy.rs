@@ -1,17 +1,17 @@
 //! Assignment of discs to cells: the Index, updated with the discs that change cells, and positions inside cells.
 
-use super::bits::Bits;
+use super::bits::CellBits;
 use crate::GROUP;
 use crate::isa::AlignedColumn;
-use crate::sweep::fast::advance::Copies;
-use crate::sweep::fast::grid::Grid;
+use crate::sweep::fast::advance::PositionCopies;
+use crate::sweep::fast::grid::CellGrid;
 use crate::sweep::fast::pairs::SENTINELS;
-use crate::sweep::lattice::{Frame, LatticeShape};
+use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 
 /// Error: the cell belongs to another disc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("disc {0} is already in that cell; a cell holds one disc")]
-pub struct Taken(pub usize);
+pub struct CellTaken(pub usize);
 
 /// The x of an empty cell: its square is finite in single precision, and nothing is near it.
 const FAR: f32 = 1e18;
@@ -37,7 +37,7 @@ pub const SPARSE: f64 = 0.15;
 #[derive(Clone, Debug)]
 pub struct Occupancy {
     shape: LatticeShape,
-    frame: Frame,
+    frame: LatticeFrame,
     half_width: usize,
     unit: f64,
     /// Distance between neighbouring columns and between neighbouring rows.
@@ -48,7 +48,7 @@ pub struct Occupancy {
     sparse: bool,
     place: [AlignedColumn<f32>; 2],
     radius: Option<AlignedColumn<f32>>,
-    occupied: Bits,
+    occupied: CellBits,
     /// Halo cells, each with the cell that it repeats.
     images: Vec<[u32; 2]>,
     /// Number of discs in no cell.
@@ -66,7 +66,7 @@ impl Occupancy {
     ///
     /// # Panics
     /// If there are 2³² − 3 discs or more, or the mask is neither 5×5 nor 7×7.
-    pub fn new(shape: LatticeShape, frame: Frame, discs: usize, reach: f64, vary: bool) -> Self {
+    pub fn new(shape: LatticeShape, frame: LatticeFrame, discs: usize, reach: f64, vary: bool) -> Self {
         assert!(
             discs < u32::MAX as usize - SENTINELS,
             "{discs} discs are too many to number: a lattice holds fewer than 2^32 − 3"
@@ -91,7 +91,7 @@ impl Occupancy {
             sparse,
             place: far(places),
             radius: (vary && !sparse).then(|| AlignedColumn::zeros(RADIUS, length)),
-            occupied: Bits::new(&shape, half_width),
+            occupied: CellBits::new(&shape, half_width),
             images: shape
                 .images()
                 .iter()
@@ -119,7 +119,7 @@ impl Occupancy {
             index: AlignedColumn::filled(INDEX, discs as u32, self.index.len()),
             place: far(self.place[0].len()),
             radius: self.radius.as_ref().map(|radius| AlignedColumn::zeros(RADIUS, radius.len())),
-            occupied: Bits::new(&self.shape, self.half_width),
+            occupied: CellBits::new(&self.shape, self.half_width),
             images: self.images.clone(),
             outside: discs,
             shared: vec![],
@@ -135,9 +135,9 @@ impl Occupancy {
 
     /// Grid of its cells.
     #[inline]
-    pub fn grid(&self) -> Grid {
+    pub fn grid(&self) -> CellGrid {
         let counts = [self.shape.columns(), self.shape.rows()];
-        Grid { frame: self.frame, counts, periodic: self.shape.periodic() }
+        CellGrid { frame: self.frame, counts, periodic: self.shape.periodic() }
     }
 
     /// Number of discs.
@@ -188,7 +188,7 @@ impl Occupancy {
         cell: [usize; 2],
         place: [f64; 2],
         radius: f64,
-    ) -> Result<(), Taken> {
+    ) -> Result<(), CellTaken> {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is already in a cell");
         assert!(
             cell[0] < self.shape.columns() && cell[1] < self.shape.rows(),
@@ -196,7 +196,7 @@ impl Occupancy {
         );
         let at = self.shape.position(cell[0] as isize, cell[1] as isize);
         if self.index[at] as usize != self.discs {
-            return Err(Taken(self.index[at] as usize));
+            return Err(CellTaken(self.index[at] as usize));
         }
         self.cell[disc] = at as u32;
         self.outside -= 1;
@@ -362,7 +362,7 @@ impl Occupancy {
 
     /// Bits of the occupied cells, images included.
     #[inline]
-    pub(super) fn occupied(&self) -> &Bits {
+    pub(super) fn occupied(&self) -> &CellBits {
         &self.occupied
     }
 
@@ -371,9 +371,9 @@ impl Occupancy {
     /// # Panics
     /// If a disc is in no cell.
     #[inline]
-    pub fn copies(&mut self) -> Option<Copies<'_>> {
+    pub fn copies(&mut self) -> Option<PositionCopies<'_>> {
         assert!(self.outside == 0, "{} discs are in no cell", self.outside);
         let [x, y] = &mut self.place;
-        (!self.sparse).then_some(Copies { cells: &self.cell, places: [x, y], unit: self.unit })
+        (!self.sparse).then_some(PositionCopies { cells: &self.cell, places: [x, y], unit: self.unit })
     }
 }

@@ -13,14 +13,14 @@
 //! because at this density most neighbours are not in contact. A candidate is written before its check, which avoids an
 //! unpredictable branch.
 
-use super::codes::{Candidate, Codes};
+use super::codes::{Codes, PackedCandidate};
 use super::detection::append_bits;
 use super::occupancy::Occupancy;
 use crate::GROUP;
-use crate::backend::Task;
+use crate::backend::RegisterTask;
 use crate::backend::{Precision, Registers};
 use crate::isa::Element;
-use crate::sweep::fast::finder::{Cursor, MARGIN};
+use crate::sweep::fast::finder::{MARGIN, SearchCursor};
 use std::ops::Range;
 
 /// Searches whole rows from `cursor` on, until `full` candidates are found.
@@ -30,15 +30,15 @@ pub(super) struct SparseSearch<'a, S, P> {
     pub(super) places: [&'a [S]; 2],
     pub(super) reach: f64,
     pub(super) rows: Range<usize>,
-    pub(super) cursor: &'a mut Cursor,
+    pub(super) cursor: &'a mut SearchCursor,
     pub(super) full: usize,
-    pub(super) found: &'a mut Vec<Candidate>,
+    pub(super) found: &'a mut Vec<PackedCandidate>,
     /// Scratch: occupied cells of a row.
     pub(super) cells: &'a mut Vec<u64>,
 }
 
 /// Uses no vectors, but the processor's bit instructions.
-impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
+impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
     #[inline(always)]
     fn on<R: Registers<Lane = f32>>(self, _: R) {
         let SparseSearch { occupancy, codes, places: [x, y], reach, rows, cursor, full, found, cells } = self;
@@ -72,7 +72,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 }
                 let before = found.len();
                 append_bits(found, near, |place| {
-                    Candidate((cell << Candidate::CODE) | (place * GROUP as u64))
+                    PackedCandidate((cell << PackedCandidate::CODE) | (place * GROUP as u64))
                 });
                 let mut kept = before;
                 for listed in before..found.len() {
@@ -90,7 +90,7 @@ impl<S: Element, P: Precision> Task<f32> for SparseSearch<'_, S, P> {
                 }
                 found.truncate(kept);
             }
-            *cursor = Cursor::at(cursor.row + 1);
+            *cursor = SearchCursor::at(cursor.row + 1);
         }
     }
 }

@@ -3,14 +3,14 @@
 use crate::statistics::non_negative;
 
 /// Measured time, and the amounts of work that it consists of.
-pub(super) struct Row<const N: usize> {
+pub(super) struct FitRow<const N: usize> {
     /// Amount of work for each unknown cost.
     pub(super) features: [f64; N],
     /// Measured nanoseconds.
     pub(super) ns: f64,
 }
 
-impl<const N: usize> Row<N> {
+impl<const N: usize> FitRow<N> {
     /// Predicted nanoseconds.
     pub(super) fn said(&self, unknowns: &[f64; N]) -> f64 {
         self.features.iter().zip(unknowns).map(|(feature, cost)| feature * cost).sum::<f64>()
@@ -26,7 +26,7 @@ impl<const N: usize> Row<N> {
 const ROUNDS: usize = 6;
 
 /// Fits non-negative unknowns to all rows, weighted by relative errors.
-pub(super) fn suited<const N: usize>(rows: &[Row<N>]) -> [f64; N] {
+pub(super) fn suited<const N: usize>(rows: &[FitRow<N>]) -> [f64; N] {
     let mut unknowns: Option<[f64; N]> = None;
     for _ in 0..ROUNDS {
         let weighted = rows.iter().map(|row| {
@@ -47,7 +47,7 @@ mod tests {
     fn the_fit_ignores_a_disturbed_point() {
         let line = |disturbed: f64| {
             let ns = |n: f64| (5.0 + 0.25 * n) * if n == 64.0 { disturbed } else { 1.0 };
-            suited(&[8.0, 16.0, 64.0, 128.0, 256.0, 512.0].map(|n| Row { features: [n, 1.0], ns: ns(n) }))
+            suited(&[8.0, 16.0, 64.0, 128.0, 256.0, 512.0].map(|n| FitRow { features: [n, 1.0], ns: ns(n) }))
         };
         let [element, start] = line(1.0);
         assert!((element - 0.25).abs() < 1e-6 && (start - 5.0).abs() < 1e-5, "{element} {start}");

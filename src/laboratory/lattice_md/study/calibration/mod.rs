@@ -8,11 +8,11 @@ mod scenes;
 use super::StudyError;
 use super::samples::Samples;
 use crate::laboratory::running::on_threads;
-use crate::model::host::{Costs, FORMAT, HostModel, LaneCosts, Measured};
+use crate::model::host::{ExecutionPrices, FORMAT, HostModel, LaneCosts, MeasurementConditions};
 use crate::statistics::median;
 use fit::suited;
-use programs::{FOOTPRINTS, LANES, LONGEST, Programs};
-use scenes::Scenes;
+use programs::{DrillPrograms, FOOTPRINTS, LANES, LONGEST};
+use scenes::DrillScenes;
 use std::time::{Duration, Instant};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::tape::register_shape;
@@ -38,7 +38,7 @@ pub(crate) fn calibrate(seconds: f64, progress: impl Fn(f64) + Sync) -> Result<H
 fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, MeasurementError> {
     let (set, begun, load) = (InstructionSet::best(), Instant::now(), load_average());
     let shapes = [register_shape::<f64>(set)?, register_shape::<f32>(set)?];
-    let (mut programs, mut scenes) = (Programs::new()?, Scenes::new()?);
+    let (mut programs, mut scenes) = (DrillPrograms::new()?, DrillScenes::new()?);
     let (end, mut of_scenes) = ((seconds - FITTING).max(1.0), Duration::ZERO);
     // Programs and scenes alternate, so that both are measured under the same conditions.
     for number in 0.. {
@@ -59,7 +59,7 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
         let rows = programs.rows((lane, is_chained), shape);
         let prices = suited(&rows);
         deviations.extend(rows.iter().map(|row| row.deviation(&prices)));
-        Costs::of(&prices)
+        ExecutionPrices::of(&prices)
     };
     let of_lanes = LANES.into_iter().zip(shapes).map(|(lane, shape)| {
         let [interpreted, chained] = [false, true].map(|is_chained| prices(lane, is_chained, shape));
@@ -70,8 +70,8 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
     let spread = middle_of_most(programs.samples().map(Samples::spread));
     let disagreement = middle_of_most(programs.samples().map(Samples::disagreement));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let measured = Measured {
-        state: Measured::state_of([spread, disagreement], load, cores),
+    let measured = MeasurementConditions {
+        state: MeasurementConditions::state_of([spread, disagreement], load, cores),
         load,
         seconds: begun.elapsed().as_secs_f64(),
         spread,

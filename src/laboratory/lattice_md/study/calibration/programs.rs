@@ -1,15 +1,15 @@
 //! Timing of the programs of a step on drill scenes of many sizes, with the interpreter and as compiled loops.
 
-use super::fit::Row;
-use crate::laboratory::lattice_md::study::phase_times::{PRECISIONS, Run, step};
+use super::fit::FitRow;
+use crate::laboratory::lattice_md::study::phase_times::{BenchRun, PRECISIONS, step};
 use crate::laboratory::lattice_md::study::samples::Samples;
-use crate::model::host::{Around, charges};
+use crate::model::host::{StepArrays, charges};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_kernels::isa::{Memory, ProgramError};
 use stripmine_kernels::{Execution, InstructionSet};
-use stripmine_physics::method::lattice_md::{Arrays, StepProgram, model};
+use stripmine_physics::method::lattice_md::{ProgramArrays, StepProgram, model};
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{self, Overrides, SEED, TEMPERATURE};
 
@@ -61,7 +61,7 @@ pub(super) const FOOTPRINTS: [f64; 5] =
 pub(super) const PRICES: usize = 4 + FOOTPRINTS.len();
 
 /// Arrays of either precision.
-trait Laid {
+trait ArraySet {
     fn memory(&mut self) -> Memory<'_>;
 
     /// Moves the arrays to other addresses. Conflicts of rows in the first-level cache depend on them: with some layouts the predictor took
@@ -69,7 +69,7 @@ trait Laid {
     fn elsewhere(&mut self);
 }
 
-impl<S: Precision, P: Precision> Laid for Arrays<S, P> {
+impl<S: Precision, P: Precision> ArraySet for ProgramArrays<S, P> {
     fn memory(&mut self) -> Memory<'_> {
         self.memory().0
     }
@@ -80,28 +80,31 @@ impl<S: Precision, P: Precision> Laid for Arrays<S, P> {
 }
 
 /// Programs of one model in one precision, with their samples.
-struct Step {
+struct DrillStep {
     programs: Vec<StepProgram>,
     ranges: Vec<Range<usize>>,
-    arrays: Box<dyn Laid>,
+    arrays: Box<dyn ArraySet>,
     /// Samples of every program, by execution.
     samples: [Vec<Samples>; EXECUTIONS.len()],
 }
 
-impl Step {
-    fn new((particles, occupancy): (usize, f64), precision: &'static str) -> Result<Step, MeasurementError> {
+impl DrillStep {
+    fn new(
+        (particles, occupancy): (usize, f64),
+        precision: &'static str,
+    ) -> Result<DrillStep, MeasurementError> {
         // The discs are at rest, so no drill depends on the previous one.
         let at_rest = Overrides::new().set(&TEMPERATURE, 0.0).set(&SEED, 7_u64);
-        let checked = Run { particles, occupancy, precision, execution: "chained" }.scene(&at_rest)?;
+        let checked = BenchRun { particles, occupancy, precision, execution: "chained" }.scene(&at_rest)?;
         let (model, discs, (programs, lengths)) = (model(&checked), &checked.particles, step(&checked));
-        Ok(Step {
+        Ok(DrillStep {
             ranges: programs.iter().map(|step| lengths.range(step.length)).collect(),
             samples: std::array::from_fn(|_| vec![Samples::default(); programs.len()]),
             programs,
             arrays: match checked.scene.machine.precision {
-                scene::Precision::F64 => Box::new(Arrays::<f64, f64>::new(&model, discs)),
-                scene::Precision::F32 => Box::new(Arrays::<f32, f32>::new(&model, discs)),
-                scene::Precision::Mixed => Box::new(Arrays::<f64, f32>::new(&model, discs)),
+                scene::Precision::F64 => Box::new(ProgramArrays::<f64, f64>::new(&model, discs)),
+                scene::Precision::F32 => Box::new(ProgramArrays::<f32, f32>::new(&model, discs)),
+                scene::Precision::Mixed => Box::new(ProgramArrays::<f64, f32>::new(&model, discs)),
             },
         })
     }
@@ -132,12 +135,12 @@ impl Step {
     }
 
     /// Charges and times of the programs on lanes of an element type, with a kind of execution.
-    fn rows(&self, (lane, is_chained): (&str, bool), shape: ([f64; 3], usize)) -> Vec<Row<PRICES>> {
+    fn rows(&self, (lane, is_chained): (&str, bool), shape: ([f64; 3], usize)) -> Vec<FitRow<PRICES>> {
         let lengths = self.ranges.iter().map(ExactSizeIterator::len);
         let programs: Vec<(Outlines, usize)> =
             self.programs.iter().map(|step| step.program.outlines()).zip(lengths).collect();
         let cycle: Vec<(&Outlines, usize)> = programs.iter().map(|(outlines, n)| (outlines, *n)).collect();
-        let around = Around::of_step(&cycle);
+        let around = StepArrays::of_step(&cycle);
         let alike = EXECUTIONS.into_iter().zip(&self.samples);
         let alike = alike.filter(|(execution, _)| (*execution == Execution::Chained) == is_chained);
         let each = alike.flat_map(|(execution, samples)| {
@@ -147,21 +150,25 @@ impl Step {
         });
         let row = |(outlines, run, ns)| {
             let charges = charges(outlines, run, shape, &around, &FOOTPRINTS);
-            Row { features: std::array::from_fn(|at| charges[at]), ns }
+            FitRow { features: std::array::from_fn(|at| charges[at]), ns }
         };
         each.map(row).collect()
     }
 }
 
 /// All measured programs with their arrays.
-pub(super) struct Programs(Vec<Step>);
+pub(super) struct DrillPrograms(Vec<DrillStep>);
 
-impl Programs {
+impl DrillPrograms {
     /// Places the drill scenes in memory.
-    pub(super) fn new() -> Result<Programs, MeasurementError> {
+    pub(super) fn new() -> Result<DrillPrograms, MeasurementError> {
         let scenes = SCENES.into_iter();
-        let of = |place| PRECISIONS.map(|precision| Step::new(place, precision));
-        scenes.flat_map(of).chain([Step::new(LARGEST, "f32")]).collect::<Result<_, _>>().map(Programs)
+        let of = |place| PRECISIONS.map(|precision| DrillStep::new(place, precision));
+        scenes
+            .flat_map(of)
+            .chain([DrillStep::new(LARGEST, "f32")])
+            .collect::<Result<_, _>>()
+            .map(DrillPrograms)
     }
 
     /// Takes one sample of all programs.
@@ -178,7 +185,7 @@ impl Programs {
     }
 
     /// Charges and times of all programs on lanes of an element type, with a kind of execution.
-    pub(super) fn rows(&self, of: (&str, bool), shape: ([f64; 3], usize)) -> Vec<Row<PRICES>> {
+    pub(super) fn rows(&self, of: (&str, bool), shape: ([f64; 3], usize)) -> Vec<FitRow<PRICES>> {
         self.0.iter().flat_map(|step| step.rows(of, shape)).collect()
     }
 }

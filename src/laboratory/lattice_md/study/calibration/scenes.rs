@@ -1,8 +1,10 @@
 //! Timing of work that depends on the data: the fast engine and neighbour lists, on separate drill scenes.
 
-use super::fit::{Row, suited};
-use crate::laboratory::lattice_md::study::phase_times::{FAST, FAST_LISTS, LISTS, PRECISIONS, Run, TimedRun};
-use crate::model::host::{Amounts, MAKING, Rates, Units};
+use super::fit::{FitRow, suited};
+use crate::laboratory::lattice_md::study::phase_times::{
+    BenchRun, FAST, FAST_LISTS, LISTS, PRECISIONS, PhaseTimedRun,
+};
+use crate::model::host::{AmountUnits, Amounts, MAKING, PhaseRates};
 use std::collections::BTreeMap;
 use std::time::Instant;
 use stripmine_physics::method::lattice_md::Phase;
@@ -15,23 +17,23 @@ const PARTICLES: [usize; 6] = [60, 220, 900, 3300, 11_000, 32_000];
 const OCCUPANCIES: [[f64; 3]; 2] = [[0.05, 0.12, 0.26], [0.07, 0.17, 0.22]];
 
 /// All drill scenes, each with true once it has been measured.
-pub(super) struct Scenes(Vec<(TimedRun, bool)>);
+pub(super) struct DrillScenes(Vec<(PhaseTimedRun, bool)>);
 
-impl Scenes {
+impl DrillScenes {
     /// Makes all drill scenes, without measurements.
-    pub(super) fn new() -> Result<Scenes, MeasurementError> {
+    pub(super) fn new() -> Result<DrillScenes, MeasurementError> {
         let (mut scenes, seed) = (vec![], Overrides::new().set(&SEED, 11_u64));
         for (particles, occupancies) in PARTICLES.into_iter().zip(OCCUPANCIES.iter().cycle()) {
             for &occupancy in occupancies {
                 for precision in PRECISIONS {
                     for execution in [FAST, FAST_LISTS, LISTS] {
-                        let run = Run { particles, occupancy, precision, execution };
-                        scenes.push((TimedRun::new(run, &seed)?, false));
+                        let run = BenchRun { particles, occupancy, precision, execution };
+                        scenes.push((PhaseTimedRun::new(run, &seed)?, false));
                     }
                 }
             }
         }
-        Ok(Scenes(scenes))
+        Ok(DrillScenes(scenes))
     }
 
     /// Measures every scene without a measurement, and others as long as there is time until `end`.
@@ -51,11 +53,11 @@ impl Scenes {
     }
 
     /// Fitted rates of the methods.
-    pub(super) fn rates(&self) -> BTreeMap<String, Rates> {
-        let mut methods = BTreeMap::<String, Rates>::new();
+    pub(super) fn rates(&self) -> BTreeMap<String, PhaseRates> {
+        let mut methods = BTreeMap::<String, PhaseRates>::new();
         for method in ["fast", "fast, sparse", "fast lists", "lists"] {
             for precision in PRECISIONS {
-                let is_alike = |run: &Run| (run.rates(), run.precision) == (Some(method), precision);
+                let is_alike = |run: &BenchRun| (run.rates(), run.precision) == (Some(method), precision);
                 let alike = || self.0.iter().map(|(scene, _)| scene).filter(|scene| is_alike(&scene.run));
                 let upkeep = Phase::ALL.iter().map(|&phase| {
                     let done = alike().map(|it| (charged(phase, &it.amounts()), it.upkeep(phase)));
@@ -77,9 +79,9 @@ impl Scenes {
 }
 
 /// Cost of each unit, fitted to amounts and nanoseconds of runs; `None` without such work.
-fn units(done: impl Iterator<Item = (Amounts, f64)>) -> Option<Units> {
+fn units(done: impl Iterator<Item = (Amounts, f64)>) -> Option<AmountUnits> {
     let rows = done.filter(|(_, ns)| *ns > 0.0);
-    let rows: Vec<_> = rows.map(|(amounts, ns)| Row { features: amounts.values(), ns }).collect();
+    let rows: Vec<_> = rows.map(|(amounts, ns)| FitRow { features: amounts.values(), ns }).collect();
     (!rows.is_empty()).then(|| suited(&rows))
 }
 

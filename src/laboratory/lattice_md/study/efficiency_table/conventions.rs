@@ -3,8 +3,8 @@
 //! BP93 prints 59, 12, 1656 = 24 · 69 and 54, but neither a program nor a rule of counting. No convention counts conversions between
 //! numbers and indices, because a CRAY word serves as both.
 
-use super::question::{Question, QuestionError, model_of, step};
-use crate::frame::{Frame, Rows};
+use super::question::{TableScene, TableSceneError, model_of, step};
+use crate::frame::{FrameBuilder, ResultFrame};
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::mask::Mask;
 use stripmine_physics::method::lattice_md::{Part, ledger, programs};
@@ -23,15 +23,15 @@ const CHOICES: [&str; 8] =
 
 /// Counting convention: values of Gear's scheme, and a choice for each of [`CHOICES`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Way(u64, [bool; CHOICES.len()]);
+struct CountingConvention(u64, [bool; CHOICES.len()]);
 
 /// Convention that counts all operations of the printed program.
 const EVERYTHING: [bool; CHOICES.len()] = [false, true, true, true, true, true, true, true];
 
 /// The four numbers by a convention, and their differences from BP93's.
 #[derive(Clone, Copy, PartialEq)]
-struct Counted {
-    way: Way,
+struct ConventionCounts {
+    way: CountingConvention,
     counts: [u64; 4],
     /// Counts minus the printed numbers.
     off: [i64; 4],
@@ -39,7 +39,7 @@ struct Counted {
     worst: f64,
 }
 
-impl Counted {
+impl ConventionCounts {
     fn exact(&self) -> usize {
         self.off.iter().filter(|off| **off == 0).count()
     }
@@ -49,21 +49,21 @@ impl Counted {
 ///
 /// The frame has the nearest conventions, those with the most exact numbers, and the count of all operations. The numbers are: all
 /// conventions, those that give each of the four numbers, those that give all four, and the most numbers given by one.
-pub(super) fn conventions(question: &Question) -> Result<(Frame, [usize; 7]), QuestionError> {
-    let texts = Texts::of(question)?;
+pub(super) fn conventions(question: &TableScene) -> Result<(ResultFrame, [usize; 7]), TableSceneError> {
+    let texts = PrintedOperations::of(question)?;
     let ways = (4..=6).flat_map(|values| {
         (0..1u32 << CHOICES.len())
-            .map(move |bits| Way(values, std::array::from_fn(|bit| bits >> bit & 1 == 1)))
+            .map(move |bits| CountingConvention(values, std::array::from_fn(|bit| bits >> bit & 1 == 1)))
     });
-    let mut all: Vec<Counted> = ways.map(|way| texts.counted(way)).collect();
+    let mut all: Vec<ConventionCounts> = ways.map(|way| texts.counted(way)).collect();
     all.sort_by(|a, b| a.worst.total_cmp(&b.worst).then(b.exact().cmp(&a.exact())));
-    let most = all.iter().map(Counted::exact).max().unwrap_or(0);
+    let most = all.iter().map(ConventionCounts::exact).max().unwrap_or(0);
     let mut shown = all[..6].to_vec();
     let exact = all[6..].iter().filter(|it| it.exact() == most).take(4);
     shown.extend(exact);
-    shown.push(texts.counted(Way(question.choice.gear_values.into(), EVERYTHING)));
+    shown.push(texts.counted(CountingConvention(question.choice.gear_values.into(), EVERYTHING)));
     let yes = |is: bool| if is { "yes" } else { "no" };
-    let mut rows = Rows::of(&shown).count("Gear values", |it| it.way.0);
+    let mut rows = FrameBuilder::of(&shown).count("Gear values", |it| it.way.0);
     for (at, choice) in CHOICES.iter().enumerate() {
         rows = rows.text(*choice, |it| yes(it.way.1[at]));
     }
@@ -72,13 +72,13 @@ pub(super) fn conventions(question: &Question) -> Result<(Frame, [usize; 7]), Qu
         .number("largest difference (%)", 1, |it| 100.0 * it.worst)
         .text("what the source's number lacks or has beyond it", residual)
         .frame("conventions", "Ways of counting the printed text, and the four numbers by each");
-    let of = |is: &dyn Fn(&&Counted) -> bool| all.iter().filter(is).count();
+    let of = |is: &dyn Fn(&&ConventionCounts) -> bool| all.iter().filter(is).count();
     let [predictor, index, place, corrector] = [0, 1, 2, 3].map(|part| of(&|it| it.off[part] == 0));
     Ok((frame, [all.len(), predictor, index, place, corrector, of(&|it| it.exact() == 4), most]))
 }
 
 /// Description of the differences.
-fn residual(counted: &&Counted) -> String {
+fn residual(counted: &&ConventionCounts) -> String {
     let off = NUMBERS.iter().zip(counted.off).filter(|(_, off)| *off != 0);
     let words: Vec<String> = off
         .map(|(name, off)| format!("{name}: {} {}", off.abs(), if off > 0 { "too many" } else { "missing" }))
@@ -87,7 +87,7 @@ fn residual(counted: &&Counted) -> String {
 }
 
 /// Recorded operations of the printed program.
-struct Texts {
+struct PrintedOperations {
     index: Vec<(&'static str, OpCounts)>,
     places: u64,
     all_places: OpCounts,
@@ -95,14 +95,14 @@ struct Texts {
     gravity: bool,
 }
 
-impl Texts {
-    fn of(question: &Question) -> Result<Texts, QuestionError> {
+impl PrintedOperations {
+    fn of(question: &TableScene) -> Result<PrintedOperations, TableSceneError> {
         let mut model = model_of(question)?;
         let (all, places) = (ledger(&step(question)?.0), model.mask.offsets().len() as u64);
         model.mask = Mask::one_place();
         let one = ledger(&programs(&model, Precision::F64));
         let index = all.entries().iter().filter(|entry| entry.part == Part::Index.name());
-        Ok(Texts {
+        Ok(PrintedOperations {
             index: index.map(|entry| (entry.section, entry.counts.clone())).collect(),
             places,
             all_places: all.part(Part::Forces.name()),
@@ -111,8 +111,8 @@ impl Texts {
         })
     }
 
-    fn counted(&self, way: Way) -> Counted {
-        let Way(_, [_, _, folded, loads, stores, gathers, shifts, gravity]) = way;
+    fn counted(&self, way: CountingConvention) -> ConventionCounts {
+        let CountingConvention(_, [_, _, folded, loads, stores, gathers, shifts, gravity]) = way;
         let counts = |op: Op| match op.class() {
             OpClass::Load => loads,
             OpClass::Store => stores,
@@ -140,12 +140,15 @@ impl Texts {
         ];
         let off = [0, 1, 2, 3].map(|part| counts[part] as i64 - PRINTED[part] as i64);
         let share = |part: usize| off[part].unsigned_abs() as f64 / PRINTED[part] as f64;
-        Counted { way, counts, off, worst: (0..4).map(share).fold(0.0, f64::max) }
+        ConventionCounts { way, counts, off, worst: (0..4).map(share).fold(0.0, f64::max) }
     }
 }
 
 /// Arithmetic, loads, stores and gathers of Gear's predictor or corrector for the three degrees of freedom of a disc.
-fn gear(Way(values, [scaled, angle, folded, ..]): Way, corrects: bool) -> [u64; 4] {
+fn gear(
+    CountingConvention(values, [scaled, angle, folded, ..]): CountingConvention,
+    corrects: bool,
+) -> [u64; 4] {
     // A rescaling, and a separate constant for each term.
     let (rescaled, apart) = (u64::from(scaled && !folded), u64::from(!scaled && !folded));
     let row = |values: u64| match corrects {
@@ -163,25 +166,29 @@ fn gear(Way(values, [scaled, angle, folded, ..]): Way, corrects: bool) -> [u64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laboratory::lattice_md::study::efficiency_table::{Choice, SOURCES_PARTS, printed_nop};
+    use crate::laboratory::lattice_md::study::efficiency_table::{SOURCES_PARTS, TableFeatures, printed_nop};
 
-    fn question(gear_values: u8) -> Question {
-        let choice = Choice { gear_values, ..Choice::default() };
-        Question { choice: choice.printed(), ..Question::default() }
+    fn question(gear_values: u8) -> TableScene {
+        let choice = TableFeatures { gear_values, ..TableFeatures::default() };
+        TableScene { choice: choice.printed(), ..TableScene::default() }
     }
 
     /// For the conventions of the printed program and of ours, the counts here equal those of the programs that run.
     #[test]
     fn counted_schemes_equal_the_running_programs() {
         for gear_values in 4..=6 {
-            for (choice, scaled) in
-                [(question(gear_values).choice, false), (Choice { gear_values, ..Choice::default() }, true)]
-            {
-                let (programs, _) = step(&Question { choice, ..Question::default() }).unwrap();
+            for (choice, scaled) in [
+                (question(gear_values).choice, false),
+                (TableFeatures { gear_values, ..TableFeatures::default() }, true),
+            ] {
+                let (programs, _) = step(&TableScene { choice, ..TableScene::default() }).unwrap();
                 for (part, corrects) in [(Part::Predictor, false), (Part::Corrector, true)] {
                     let run = ledger(&programs).part(part.name());
                     let arithmetic = run.filtered(|op| !op.class().moves_data()).total();
-                    let way = Way(gear_values.into(), [scaled, true, !scaled, true, true, true, true, true]);
+                    let way = CountingConvention(
+                        gear_values.into(),
+                        [scaled, true, !scaled, true, true, true, true, true],
+                    );
                     let [mut counted, mut loads, stores, gathers] = gear(way, corrects);
                     if corrects {
                         counted += 1; // Gravity.
@@ -204,9 +211,11 @@ mod tests {
     /// Counted by hand, an offset of the printed program has 58 computing operations, 8 shifted copies and 3 sums.
     #[test]
     fn operations_of_an_offset_match_a_hand_count() {
-        let texts = Texts::of(&question(5)).unwrap();
+        let texts = PrintedOperations::of(&question(5)).unwrap();
         let place = |stores, shifts| {
-            texts.counted(Way(5, [false, true, true, false, stores, false, shifts, false])).counts[2]
+            texts
+                .counted(CountingConvention(5, [false, true, true, false, stores, false, shifts, false]))
+                .counts[2]
         };
         assert_eq!([place(false, false), place(false, true), place(true, true)], [58, 66, 69]);
         let printed = SOURCES_PARTS.map(|part| printed_nop(part).unwrap());

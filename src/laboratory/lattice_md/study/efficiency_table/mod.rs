@@ -3,20 +3,20 @@
 mod conventions;
 mod question;
 
-pub(crate) use question::{Choice, Question, QuestionError, counting_model, model_of, step};
+pub(crate) use question::{TableFeatures, TableScene, TableSceneError, counting_model, model_of, step};
 
-use crate::console::Failure;
-use crate::frame::{Cell, Frame, Rows};
-use crate::model::clock::{Clock, Work};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
+use crate::model::clock::{Clock, ProgramWork};
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::results::{Lab, Made, Size};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use conventions::conventions;
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
-use stripmine_kernels::ledger::{Ledger, Length};
+use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::printed::EQUATIONS;
-use stripmine_physics::method::lattice_md::{Lengths, Model, Part, ledger, programs};
+use stripmine_physics::method::lattice_md::{GranularModel, Lengths, Part, ledger, programs};
 use stripmine_physics::scene::Precision;
 
 /// Parts of BP93's table. BP93 has no entry for the lattice vectors, nor for parts that only our program has.
@@ -37,31 +37,31 @@ pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cel
 }
 
 /// Counts the default scene on the machine of the paper.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    Ok(efficiency_table(&Question::default(), &machines::preset("paper")?)?)
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    Ok(efficiency_table(&TableScene::default(), &machines::preset("paper")?)?)
 }
 
 /// Counted programs of a text.
-struct Counted<'m> {
+struct CountedText<'m> {
     ledger: Ledger,
     lengths: Lengths,
     machine: &'m MachineModel,
 }
 
-impl Counted<'_> {
-    fn of<'m>(question: &Question, machine: &'m MachineModel) -> Result<Counted<'m>, QuestionError> {
+impl CountedText<'_> {
+    fn of<'m>(question: &TableScene, machine: &'m MachineModel) -> Result<CountedText<'m>, TableSceneError> {
         let (programs, lengths) = step(question)?;
-        Ok(Counted { ledger: ledger(&programs), lengths, machine })
+        Ok(CountedText { ledger: ledger(&programs), lengths, machine })
     }
 
-    fn n(&self, length: Length) -> u64 {
+    fn n(&self, length: VectorLength) -> u64 {
         self.lengths.range(length).len() as u64
     }
 
     /// Parts, each with one vector length: name, operations, length, clock periods.
-    fn rows(&self, clock: Clock) -> impl Iterator<Item = (&'static str, OpCounts, Length, f64)> {
+    fn rows(&self, clock: Clock) -> impl Iterator<Item = (&'static str, OpCounts, VectorLength, f64)> {
         self.ledger.parts().into_iter().map(move |(part, length, counts)| {
-            let clocks = clock.clocks(self.machine, &Work::from(counts.clone()), self.n(length));
+            let clocks = clock.clocks(self.machine, &ProgramWork::from(counts.clone()), self.n(length));
             (part, counts, length, clocks)
         })
     }
@@ -76,9 +76,12 @@ impl Counted<'_> {
 }
 
 /// Efficiency table of a scene on a machine.
-pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> Result<Made, QuestionError> {
+pub(crate) fn efficiency_table(
+    question: &TableScene,
+    machine: &MachineModel,
+) -> Result<FinishedItem, TableSceneError> {
     let source_question = question.printed();
-    let texts = [Counted::of(&source_question, machine)?, Counted::of(question, machine)?];
+    let texts = [CountedText::of(&source_question, machine)?, CountedText::of(question, machine)?];
     let [printed, ours] = &texts;
     let Lengths { discs, cells, .. } = ours.lengths;
     let (conventions, ways) = conventions(&source_question)?;
@@ -95,7 +98,7 @@ pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> R
     let step =
         ("step", [Some(source.0), all_printed, all_ours], [Some(source.1), clocks_printed, clocks_ours]);
     let rows = rows.filter(|(_, nop, _)| nop.iter().any(Option::is_some)).chain([step]);
-    let mut summary = Rows::of([()])
+    let mut summary = FrameBuilder::of([()])
         .count("NP", |()| discs)
         .count("LMAX", |()| cells)
         .number("occupancy", 4, |()| discs as f64 / cells as f64)
@@ -112,12 +115,12 @@ pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> R
     for (name, count) in names.into_iter().chain(["most numbers of one way"]).zip(ways) {
         summary = summary.count(name, |()| count);
     }
-    Ok(Made::of([
-        Rows::of(rows)
+    Ok(FinishedItem::of([
+        FrameBuilder::of(rows)
             .text("part", |(part, ..)| *part)
             .cells(["printed in 1993", "printed text, counted", "ours, counted"], |(_, nop, _)| *nop)
             .cells(["clocks printed", "clocks, printed text", "clocks, ours"], |(.., clocks)| {
-                clocks.map(|clocks| clocks.map(|clocks| Cell::Number(clocks, 0)))
+                clocks.map(|clocks| clocks.map(|clocks| TableCell::Number(clocks, 0)))
             })
             .frame("efficiency_table", "Operations and clock periods of one step"),
         conventions,
@@ -135,15 +138,15 @@ pub(crate) fn efficiency_table(question: &Question, machine: &MachineModel) -> R
 }
 
 /// Operations of each section per cell and per offset, from sweeps over all offsets and over one.
-fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame, QuestionError> {
-    let tally = |model: &Model| -> Vec<(&'static str, OpCounts)> {
+fn force_sections(question: &TableScene, name: &str, title: &str) -> Result<ResultFrame, TableSceneError> {
+    let tally = |model: &GranularModel| -> Vec<(&'static str, OpCounts)> {
         let forces = programs(model, Precision::F64).into_iter().filter(|step| step.part == Part::Forces);
         forces.flat_map(|step| step.program.tally()).collect()
     };
     let model = model_of(question)?;
     let more = (model.mask.offsets().len() - 1) as u64;
     let all = tally(&model);
-    let one = tally(&Model { mask: Mask::one_place(), ..model });
+    let one = tally(&GranularModel { mask: Mask::one_place(), ..model });
     let shifts = |counts: &OpCounts| counts.of_class(OpClass::Shift);
     // Section; operations per offset, shifts among these, operations per cell, total.
     let mut rows: Vec<(&str, [u64; 4])> = vec![];
@@ -158,7 +161,7 @@ fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame,
     rows.push(("forces", sums));
     let equation =
         |section: &str| EQUATIONS.iter().find(|(known, _)| *known == section).map_or("", |it| it.1);
-    Ok(Rows::of(rows)
+    Ok(FrameBuilder::of(rows)
         .text("section", |(section, _)| *section)
         .text("what it is", |(section, _)| equation(section))
         .cells(
@@ -169,11 +172,11 @@ fn force_sections(question: &Question, name: &str, title: &str) -> Result<Frame,
         .frame(name, title))
 }
 
-fn vector_lengths(texts: [(&'static str, &Counted<'_>); 2]) -> Frame {
+fn vector_lengths(texts: [(&'static str, &CountedText<'_>); 2]) -> ResultFrame {
     let rows =
         texts.into_iter().flat_map(|(name, text)| text.rows(Clock::Paper).map(move |row| (name, text, row)));
     let moving = |counts: &OpCounts| counts.filtered(|op| op.class().moves_data()).total();
-    Rows::of(rows)
+    FrameBuilder::of(rows)
         .text("text", |(name, ..)| *name)
         .text("part", |(.., (part, ..))| *part)
         .count("NOP", |(.., (_, counts, ..))| counts.total())
@@ -185,12 +188,12 @@ fn vector_lengths(texts: [(&'static str, &Counted<'_>); 2]) -> Frame {
         .frame("vector_lengths", "Operations by the length of their vectors")
 }
 
-fn classes(ledgers: [&Ledger; 2]) -> Frame {
+fn classes(ledgers: [&Ledger; 2]) -> ResultFrame {
     let of = |part: Part, class: OpClass| ledgers.map(|ledger| ledger.part(part.name()).of_class(class));
     let total =
         |class: OpClass| [0, 1].map(|text| Part::ALL.iter().map(|&part| of(part, class)[text]).sum::<u64>());
     let both = |name: &str| ["printed", "ours"].map(|text| format!("{name}, {text}"));
-    let mut rows = Rows::of(OpClass::ALL.iter().copied().filter(|class| total(*class) != [0, 0]))
+    let mut rows = FrameBuilder::of(OpClass::ALL.iter().copied().filter(|class| total(*class) != [0, 0]))
         .text("class", |class| class.name());
     for &part in Part::ALL {
         if OpClass::ALL.iter().any(|&class| of(part, class) != [0, 0]) {
@@ -201,24 +204,27 @@ fn classes(ledgers: [&Ledger; 2]) -> Frame {
 }
 
 /// The given scene, and simpler and more expensive scenes.
-fn savings(question: &Question, machine: &MachineModel) -> Result<Frame, QuestionError> {
+fn savings(question: &TableScene, machine: &MachineModel) -> Result<ResultFrame, TableSceneError> {
     let asked = question.choice;
     let variants = [
         ("as asked", asked),
-        ("without friction", Choice { frictionless: true, ..asked }),
-        ("with equal discs", Choice { equal_discs: true, ..asked }),
-        ("without friction, with equal discs", Choice { frictionless: true, equal_discs: true, ..asked }),
-        ("with 4 Gear values", Choice { gear_values: 4, ..asked }),
-        ("with 6 Gear values", Choice { gear_values: 6, ..asked }),
-        ("with positions relative to the cell", Choice { cell_relative: true, ..asked }),
-        ("with the 7×7 mask", Choice { mask: 7, ..asked }),
+        ("without friction", TableFeatures { frictionless: true, ..asked }),
+        ("with equal discs", TableFeatures { equal_discs: true, ..asked }),
+        (
+            "without friction, with equal discs",
+            TableFeatures { frictionless: true, equal_discs: true, ..asked },
+        ),
+        ("with 4 Gear values", TableFeatures { gear_values: 4, ..asked }),
+        ("with 6 Gear values", TableFeatures { gear_values: 6, ..asked }),
+        ("with positions relative to the cell", TableFeatures { cell_relative: true, ..asked }),
+        ("with the 7×7 mask", TableFeatures { mask: 7, ..asked }),
     ];
     let variants = variants.into_iter().filter(|(name, choice)| *name == "as asked" || *choice != asked);
-    let counted = |(name, choice)| Ok((name, Counted::of(&Question { choice, ..*question }, machine)?));
-    let variants = variants.map(counted).collect::<Result<Vec<_>, QuestionError>>()?;
-    let nop = |counted: &Counted<'_>, part: Part| counted.ledger.part(part.name()).total();
-    let clocks = |counted: &Counted<'_>| counted.sums(None).1.unwrap_or(f64::NAN);
-    let mut rows = Rows::of(&variants).text("scene", |(name, _)| *name);
+    let counted = |(name, choice)| Ok((name, CountedText::of(&TableScene { choice, ..*question }, machine)?));
+    let variants = variants.map(counted).collect::<Result<Vec<_>, TableSceneError>>()?;
+    let nop = |counted: &CountedText<'_>, part: Part| counted.ledger.part(part.name()).total();
+    let clocks = |counted: &CountedText<'_>| counted.sums(None).1.unwrap_or(f64::NAN);
+    let mut rows = FrameBuilder::of(&variants).text("scene", |(name, _)| *name);
     for &part in Part::ALL {
         if variants.iter().any(|(_, counted)| nop(counted, part) != 0) {
             rows = rows.count(format!("NOP {}", part.name()), |(_, counted)| nop(counted, part));

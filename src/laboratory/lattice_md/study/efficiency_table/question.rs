@@ -3,20 +3,20 @@
 use crate::study::StudyError;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use stripmine_kernels::law::granular::{Contact, ContactArm, Disc};
+use stripmine_kernels::law::granular::{Contact, ContactArm, EqualDiscs};
 use stripmine_kernels::law::spring::Spring;
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::lattice::{Coordinates, Frame, LatticeShape, ShapeError};
+use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame, LatticeShape, ShapeError};
 use stripmine_physics::method::lattice_md::{
-    Discs, GearValues, Lengths, Model, ProgramText, Scheme, StepProgram, programs,
+    DiscUniformity, GearValues, GranularModel, GranularScheme, Lengths, ProgramVersion, StepProgram, programs,
 };
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Precision;
 use stripmine_physics::words::Words;
 
 /// Scene whose operations are counted, as options of verbs.
 #[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct Question {
+pub(crate) struct TableScene {
     /// Number of particles NP
     #[arg(long, default_value_t = 1000)]
     pub(crate) particles: usize,
@@ -24,15 +24,15 @@ pub(crate) struct Question {
     #[arg(long, default_value_t = 0.25)]
     pub(crate) occupancy: f64,
     #[command(flatten)]
-    pub(crate) choice: Choice,
+    pub(crate) choice: TableFeatures,
 }
 
 /// Features of the method that a scene needs. BP93's program has friction, different discs and absolute positions.
 #[derive(Args, Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Choice {
+pub(crate) struct TableFeatures {
     /// Program: ours, or BP93's as printed
     #[arg(long, default_value = "ours", value_parser = text_parser())]
-    pub(crate) text: ProgramText,
+    pub(crate) text: ProgramVersion,
     /// Omit friction and rotation
     #[arg(long, conflicts_with = "text")]
     pub(crate) frictionless: bool,
@@ -50,45 +50,45 @@ pub(crate) struct Choice {
     pub(crate) cell_relative: bool,
 }
 
-fn text_parser() -> impl TypedValueParser<Value = ProgramText> {
+fn text_parser() -> impl TypedValueParser<Value = ProgramVersion> {
     // The parser admits words of the list only.
-    PossibleValuesParser::new(ProgramText::WORDS.to_vec())
-        .map(|word| ProgramText::parse(&word).unwrap_or(ProgramText::Ours))
+    PossibleValuesParser::new(ProgramVersion::WORDS.to_vec())
+        .map(|word| ProgramVersion::parse(&word).unwrap_or(ProgramVersion::Ours))
 }
 
 /// 1000 discs on 4000 cells.
-impl Default for Question {
+impl Default for TableScene {
     fn default() -> Self {
-        Question { particles: 1000, occupancy: 0.25, choice: Choice::default() }
+        TableScene { particles: 1000, occupancy: 0.25, choice: TableFeatures::default() }
     }
 }
 
 /// All features of BP93, with our program.
-impl Default for Choice {
+impl Default for TableFeatures {
     fn default() -> Self {
-        let (text, [frictionless, equal_discs, cell_relative]) = (ProgramText::Ours, [false; 3]);
-        Choice { text, frictionless, equal_discs, gear_values: 5, mask: 5, cell_relative }
+        let (text, [frictionless, equal_discs, cell_relative]) = (ProgramVersion::Ours, [false; 3]);
+        TableFeatures { text, frictionless, equal_discs, gear_values: 5, mask: 5, cell_relative }
     }
 }
 
-impl Choice {
+impl TableFeatures {
     /// This choice with BP93's program.
-    pub(crate) fn printed(self) -> Choice {
-        let Choice { gear_values, mask, .. } = self;
-        Choice { text: ProgramText::Printed, gear_values, mask, ..Choice::default() }
+    pub(crate) fn printed(self) -> TableFeatures {
+        let TableFeatures { gear_values, mask, .. } = self;
+        TableFeatures { text: ProgramVersion::Printed, gear_values, mask, ..TableFeatures::default() }
     }
 }
 
-impl Question {
+impl TableScene {
     /// This scene with BP93's program.
-    pub(crate) fn printed(self) -> Question {
-        Question { choice: self.choice.printed(), ..self }
+    pub(crate) fn printed(self) -> TableScene {
+        TableScene { choice: self.choice.printed(), ..self }
     }
 }
 
 /// Scene without an efficiency table.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum QuestionError {
+pub(crate) enum TableSceneError {
     #[error("the occupancy is {0}; it must be above 0 and at most 1 (one disc per cell)")]
     Occupancy(f64),
     #[error("a step needs at least one particle")]
@@ -97,14 +97,14 @@ pub(crate) enum QuestionError {
     Shape { particles: usize, occupancy: f64, cause: ShapeError },
 }
 
-impl Reported for QuestionError {
-    fn class(&self) -> Class {
-        Class::Usage
+impl Reported for TableSceneError {
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Usage
     }
 }
 
-impl From<QuestionError> for StudyError {
-    fn from(error: QuestionError) -> Self {
+impl From<TableSceneError> for StudyError {
+    fn from(error: TableSceneError) -> Self {
         StudyError::Own(Box::new(error))
     }
 }
@@ -112,16 +112,16 @@ impl From<QuestionError> for StudyError {
 /// Model with `choice` on a nearly square, periodic lattice of about `cells` cells.
 ///
 /// Parameters that do not affect operation counts are arbitrary.
-pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, ShapeError> {
+pub(crate) fn counting_model(cells: usize, choice: TableFeatures) -> Result<GranularModel, ShapeError> {
     let columns = ((cells as f64).sqrt().round() as usize).max(1);
     let rows = cells.div_ceil(columns);
     let mask = Mask::square(choice.mask / 2);
     let coordinates = if choice.cell_relative { Coordinates::CellRelative } else { Coordinates::Absolute };
-    let disc = Disc { radius: 0.5, inverse_mass: 1.0 };
-    Ok(Model {
+    let disc = EqualDiscs { radius: 0.5, inverse_mass: 1.0 };
+    Ok(GranularModel {
         text: choice.text,
         shape: LatticeShape::new(columns, rows, &mask, [true, true])?,
-        frame: Frame { origin: [0.0, 0.0], edge: [0.5, 0.5] },
+        frame: LatticeFrame { origin: [0.0, 0.0], edge: [0.5, 0.5] },
         sides: [columns, rows].map(|count| 0.5 * count as f64),
         mask,
         coordinates,
@@ -131,12 +131,16 @@ pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, Shap
             normal_damping: 1000.0,
             shear_damping: 300.0,
             friction: 0.5,
-            cohesionless: choice.text == ProgramText::Ours,
+            cohesionless: choice.text == ProgramVersion::Ours,
             arm: ContactArm::Radius,
         },
         friction: !choice.frictionless,
-        discs: if choice.equal_discs { Discs::Equal { disc, inverse_inertia: 8.0 } } else { Discs::Varying },
-        scheme: Scheme::Gear(match choice.gear_values {
+        discs: if choice.equal_discs {
+            DiscUniformity::Equal { disc, inverse_inertia: 8.0 }
+        } else {
+            DiscUniformity::Varying
+        },
+        scheme: GranularScheme::Gear(match choice.gear_values {
             4 => GearValues::Four,
             5 => GearValues::Five,
             _ => GearValues::Six,
@@ -148,20 +152,20 @@ pub(crate) fn counting_model(cells: usize, choice: Choice) -> Result<Model, Shap
     })
 }
 
-pub(crate) fn model_of(question: &Question) -> Result<Model, QuestionError> {
-    let &Question { particles, occupancy, choice } = question;
+pub(crate) fn model_of(question: &TableScene) -> Result<GranularModel, TableSceneError> {
+    let &TableScene { particles, occupancy, choice } = question;
     if particles == 0 {
-        return Err(QuestionError::NoParticles);
+        return Err(TableSceneError::NoParticles);
     }
     if !(occupancy > 0.0 && occupancy <= 1.0) {
-        return Err(QuestionError::Occupancy(occupancy));
+        return Err(TableSceneError::Occupancy(occupancy));
     }
     let cells = (particles as f64 / occupancy).ceil() as usize;
-    counting_model(cells, choice).map_err(|cause| QuestionError::Shape { particles, occupancy, cause })
+    counting_model(cells, choice).map_err(|cause| TableSceneError::Shape { particles, occupancy, cause })
 }
 
 /// Programs of a step and their vector lengths.
-pub(crate) fn step(question: &Question) -> Result<(Vec<StepProgram>, Lengths), QuestionError> {
+pub(crate) fn step(question: &TableScene) -> Result<(Vec<StepProgram>, Lengths), TableSceneError> {
     let model = model_of(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);
     Ok((programs(&model, Precision::F64), lengths))

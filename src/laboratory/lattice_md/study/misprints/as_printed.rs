@@ -5,7 +5,7 @@
 
 use stripmine_kernels::isa::{Predicate, Vector};
 use stripmine_kernels::law::granular::Contact;
-use stripmine_kernels::law::{Axis, Env, Field, Law, Sum};
+use stripmine_kernels::law::{Axis, Env, Law, ParticleField, ParticleSum};
 
 /// Misprinted equations of BP93's contact law. `tests.rs` has a test for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,14 +59,14 @@ impl AsPrinted {
 impl Law<2> for AsPrinted {
     type Own<V: Copy> = [V; 2];
 
-    const FIELDS: &'static [Field] = &[
-        Field::Velocity(Axis::X),
-        Field::Velocity(Axis::Y),
-        Field::Omega,
-        Field::Radius,
-        Field::InverseMass,
+    const FIELDS: &'static [ParticleField] = &[
+        ParticleField::Velocity(Axis::X),
+        ParticleField::Velocity(Axis::Y),
+        ParticleField::Omega,
+        ParticleField::Radius,
+        ParticleField::InverseMass,
     ];
-    const SUMS: &'static [Sum] = &Sum::PLANAR;
+    const SUMS: &'static [ParticleSum] = &ParticleSum::PLANAR;
 
     fn own<E: Env<2>>(&self, env: E) -> [E::V; 2] {
         env.own_position()
@@ -81,7 +81,7 @@ impl Law<2> for AsPrinted {
         // (4)-(7)
         let [dx, dy] = env.displacement(*own, place);
         let distance = (dx * dx + dy * dy).sqrt();
-        let radii = both(Field::Radius);
+        let radii = both(ParticleField::Radius);
         let depth = radii[0] + radii[1] - distance;
         let touch = depth.less_equal(zero).not();
         let depth = depth.max(zero);
@@ -89,12 +89,12 @@ impl Law<2> for AsPrinted {
         // (13)
         let (sx, sy) = (zero - ny, nx);
 
-        let [vx, vy] = [Field::Velocity(Axis::X), Field::Velocity(Axis::Y)].map(|field| {
+        let [vx, vy] = [ParticleField::Velocity(Axis::X), ParticleField::Velocity(Axis::Y)].map(|field| {
             let [own, partner] = both(field);
             own - partner
         });
         // (17)
-        let [own_inverse_mass, inverse_mass] = both(Field::InverseMass);
+        let [own_inverse_mass, inverse_mass] = both(ParticleField::InverseMass);
         let effective_mass = one / (own_inverse_mass + inverse_mass);
 
         // (14)
@@ -103,7 +103,7 @@ impl Law<2> for AsPrinted {
         let normal = if self.prints(Misprint::NormalDamping) { elastic + damping } else { elastic - damping };
 
         // (16)
-        let [own_omega, omega] = both(Field::Omega);
+        let [own_omega, omega] = both(ParticleField::Omega);
         let (own_rim, rim) = (radii[0] * own_omega, radii[1] * omega);
         let along = vx * sx + vy * sy;
         let slip = if self.prints(Misprint::Slip) { along + own_rim - rim } else { along - own_rim - rim };
@@ -121,7 +121,9 @@ impl Law<2> for AsPrinted {
         // (10)-(12)
         let (tx, ty) = if self.prints(Misprint::Tangent) { (ny, zero - nx) } else { (sx, sy) };
         let force = [normal * nx + shear * tx, normal * ny + shear * ty];
-        for (sum, component) in [Sum::Force(Axis::X), Sum::Force(Axis::Y)].into_iter().zip(force) {
+        for (sum, component) in
+            [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)].into_iter().zip(force)
+        {
             let component = E::V::select(touch, component, zero);
             env.own_add(sum, component);
             if E::BOTH_PARTNERS {
@@ -129,9 +131,9 @@ impl Law<2> for AsPrinted {
             }
         }
         let shear = E::V::select(touch, shear, zero);
-        env.own_add(Sum::Torque, zero - radii[0] * shear);
+        env.own_add(ParticleSum::Torque, zero - radii[0] * shear);
         if E::BOTH_PARTNERS {
-            env.partner_sub(Sum::Torque, place, radii[1] * shear);
+            env.partner_sub(ParticleSum::Torque, place, radii[1] * shear);
         }
     }
 }

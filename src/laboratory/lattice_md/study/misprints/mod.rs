@@ -4,18 +4,18 @@ mod as_printed;
 #[cfg(test)]
 mod tests;
 
-use crate::console::Failure;
-use crate::frame::{Cell, Rows};
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, TableCell};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use as_printed::{AsPrinted, Misprint};
 use stripmine_kernels::law::Law;
-use stripmine_kernels::law::granular::{Contact, ContactArm, Disc, Granular};
+use stripmine_kernels::law::granular::{Contact, ContactArm, EqualDiscs, Granular};
 use stripmine_kernels::law::spring::Spring;
-use stripmine_kernels::noise::{Purpose, Stream};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::sweep::pair::Pair;
 
 /// Quantity that distinguishes the printed law from the corrected law.
-struct Finding {
+struct MisprintFinding {
     misprint: Misprint,
     quantity: &'static str,
     /// Parameters of the law and, if any, of the pair.
@@ -70,9 +70,9 @@ const PAIRS: usize = 500;
 const SEED: u64 = 1993;
 
 /// Tests every misprint.
-pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (head_on, sliding) = (head_on(), sliding());
-    let findings = Rows::of(findings(&head_on, &sliding))
+    let findings = FrameBuilder::of(findings(&head_on, &sliding))
         .cells(["equation", "as printed", "as it runs"], |it| it.misprint.words())
         .text("what shows it", |it| it.quantity)
         .text("with", |it| it.setting.clone())
@@ -81,26 +81,27 @@ pub(crate) fn made(_: &Lab<'_>, _: Size) -> Result<Made, Failure> {
         .number("printed gives", 3, |it| it.by[0])
         .number("ours gives", 3, |it| it.by[1])
         .frame("misprints", "Equations that do not work as printed");
-    let numbers = |row: &[f64]| row.iter().map(|it| Cell::Number(*it, 6)).collect::<Vec<_>>();
-    Ok(Made::of([
+    let numbers = |row: &[f64]| row.iter().map(|it| TableCell::Number(*it, 6)).collect::<Vec<_>>();
+    Ok(FinishedItem::of([
         findings,
-        Rows::of(&head_on)
+        FrameBuilder::of(&head_on)
             .cells(["time", "printed", "ours", "undamped"], |it| numbers(*it))
             .frame("head_on", "Energy through the head-on collision of (14)"),
-        Rows::of(&sliding)
+        FrameBuilder::of(&sliding)
             .cells(["slip", "printed", "ours"], |it| numbers(*it))
             .frame("sliding", "Shear force over its bound in the sliding contact of (15)"),
     ])
     .with_seeds([SEED]))
 }
 
-fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [Finding; 6] {
+fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [MisprintFinding; 6] {
     use Misprint::{CoulombBound, NormalDamping, Slip, Tangent};
     let start = |offset: f64| ("at most", Pair::colliding(offset).kinetic_energy());
     let exact = ("equal to", 0.0);
     let last = head_on[head_on.len() - 1];
     let slips = format!("{}; v_t from −{LARGEST_SLIP} to {LARGEST_SLIP}", setting(SLIDING));
-    let finding = |misprint, quantity, setting, right, by| Finding { misprint, quantity, setting, right, by };
+    let finding =
+        |misprint, quantity, setting, right, by| MisprintFinding { misprint, quantity, setting, right, by };
     [
         finding(
             Tangent,
@@ -164,12 +165,12 @@ fn printed(misprint: Misprint, contact: Contact) -> AsPrinted {
 
 /// Corrected law for different discs.
 fn ours(contact: Contact) -> Granular<true, false> {
-    Granular { contact, disc: Disc { radius: f64::NAN, inverse_mass: f64::NAN } }
+    Granular { contact, disc: EqualDiscs { radius: f64::NAN, inverse_mass: f64::NAN } }
 }
 
 /// Largest error of d(L_orbital + L_spin)/dt = −ξ F_S, with −R F_S the torque on the first disc.
 fn off_the_rule<L: Law<2>>(law: &L) -> f64 {
-    let mut random = Stream::new(SEED, Purpose::Placement, 0);
+    let mut random = Stream::new(SEED, RandomPurpose::Placement, 0);
     let pairs = (0..PAIRS).map(|_| Pair::random(&mut random));
     largest(pairs.map(|pair| {
         let [[_, _, torque], _] = pair.sums(law);

@@ -4,7 +4,7 @@ use super::*;
 
 /// Random pairs in contact.
 fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
-    let mut random = Stream::new(seed, Purpose::Test, 0);
+    let mut random = Stream::new(seed, RandomPurpose::Test, 0);
     (0..count).map(move |_| Pair::random(&mut random))
 }
 
@@ -137,7 +137,9 @@ const VISIBLE: f64 = 0.01;
 #[test]
 fn printed_forms_fail_and_corrected_forms_hold() {
     for finding in findings(&head_on(), &sliding()) {
-        let Finding { misprint, quantity, right: (relation, right), by: [by_printed, by_ours], .. } = finding;
+        let MisprintFinding {
+            misprint, quantity, right: (relation, right), by: [by_printed, by_ours], ..
+        } = finding;
         let missed = |value: f64| match relation {
             "at most" => (value - right).max(0.0),
             _ => (value - right).abs(),

@@ -1,7 +1,7 @@
 //! Cases of a validation, and the errors of their predictions.
 
 use super::EXECUTIONS;
-use crate::frame::{Frame, Rows};
+use crate::frame::{FrameBuilder, ResultFrame};
 use crate::statistics::quantile;
 
 /// Name of a whole step among the phases.
@@ -13,7 +13,7 @@ const NAMED: usize = 12;
 
 /// Phase of a step of one run, a whole step, or a program of a law without calibration.
 #[derive(Clone, Debug)]
-pub(super) struct Case {
+pub(super) struct ValidationCase {
     /// Precision, NP and ρ; or the law and the length of the vectors.
     pub(super) place: String,
     pub(super) execution: &'static str,
@@ -24,12 +24,12 @@ pub(super) struct Case {
     pub(super) measured: f64,
 }
 
-impl Case {
+impl ValidationCase {
     /// Whole step as the sum of its phases; `None` without phases.
-    pub(super) fn step(phases: &[Case]) -> Option<Case> {
-        let sum = |of: fn(&Case) -> f64| phases.iter().map(of).sum::<f64>();
+    pub(super) fn step(phases: &[ValidationCase]) -> Option<ValidationCase> {
+        let sum = |of: fn(&ValidationCase) -> f64| phases.iter().map(of).sum::<f64>();
         let (predicted, measured) = (sum(|case| case.predicted), sum(|case| case.measured));
-        Some(Case { phase: STEP, predicted, measured, ..phases.first()?.clone() })
+        Some(ValidationCase { phase: STEP, predicted, measured, ..phases.first()?.clone() })
     }
 
     /// Error relative to the measured time.
@@ -44,25 +44,25 @@ impl Case {
 }
 
 /// Frames of the errors by group, of the worst cases, and of all cases.
-pub(super) fn frames(cases: &[Case]) -> [Frame; 3] {
+pub(super) fn frames(cases: &[ValidationCase]) -> [ResultFrame; 3] {
     let of = |errors: &[f64], share| 100.0 * quantile(errors, share).unwrap_or(f64::NAN);
-    let mut worst: Vec<&Case> = cases.iter().collect();
+    let mut worst: Vec<&ValidationCase> = cases.iter().collect();
     worst.sort_by(|a, b| b.error().abs().total_cmp(&a.error().abs()));
     [
-        Rows::of(groups(cases))
+        FrameBuilder::of(groups(cases))
             .text("cases of", |(what, _)| what.clone())
             .count("cases", |(_, errors)| errors.len())
             .number("median (%)", 1, |(_, errors)| of(errors, 0.5))
             .number("90 % below (%)", 1, |(_, errors)| of(errors, 0.9))
             .number("worst (%)", 1, |(_, errors)| of(errors, 1.0))
             .frame("errors", "Errors of the predictions"),
-        Rows::of(worst.into_iter().take(NAMED))
+        FrameBuilder::of(worst.into_iter().take(NAMED))
             .text("case", |case| format!("{}, {}, {}", case.phase, case.execution, case.place))
             .number("predicted (ns)", 0, |case| case.predicted)
             .number("measured (ns)", 0, |case| case.measured)
             .number("error (%)", 1, |case| 100.0 * case.error())
             .frame("worst", "The worst cases"),
-        Rows::of(cases)
+        FrameBuilder::of(cases)
             .text("phase", |case| case.phase)
             .text("execution", |case| case.execution)
             .text("place", |case| &case.place)
@@ -73,9 +73,9 @@ pub(super) fn frames(cases: &[Case]) -> [Frame; 3] {
 }
 
 /// Groups of cases with the sorted magnitudes of their errors.
-fn groups(cases: &[Case]) -> Vec<(String, Vec<f64>)> {
+fn groups(cases: &[ValidationCase]) -> Vec<(String, Vec<f64>)> {
     let mut groups = vec![];
-    let mut group = |what: String, keep: &dyn Fn(&Case) -> bool| {
+    let mut group = |what: String, keep: &dyn Fn(&ValidationCase) -> bool| {
         let mut errors: Vec<f64> = cases.iter().filter(|it| keep(it)).map(|it| it.error().abs()).collect();
         errors.sort_by(f64::total_cmp);
         if !errors.is_empty() {
@@ -101,8 +101,8 @@ fn groups(cases: &[Case]) -> Vec<(String, Vec<f64>)> {
 mod tests {
     use super::*;
 
-    fn case(predicted: f64, execution: &'static str, phase: &'static str) -> Case {
-        Case { place: "here".into(), execution, phase, predicted, measured: 100.0 }
+    fn case(predicted: f64, execution: &'static str, phase: &'static str) -> ValidationCase {
+        ValidationCase { place: "here".into(), execution, phase, predicted, measured: 100.0 }
     }
 
     #[test]
@@ -125,8 +125,9 @@ mod tests {
 
     #[test]
     fn a_step_is_the_sum_of_its_phases() {
-        let step = Case::step(&[case(102.0, "eager", "forces"), case(92.0, "eager", "index")]).unwrap();
+        let step =
+            ValidationCase::step(&[case(102.0, "eager", "forces"), case(92.0, "eager", "index")]).unwrap();
         assert_eq!((step.phase, step.predicted, step.measured), (STEP, 194.0, 200.0));
-        assert!(!step.depends_on_data() && Case::step(&[]).is_none());
+        assert!(!step.depends_on_data() && ValidationCase::step(&[]).is_none());
     }
 }

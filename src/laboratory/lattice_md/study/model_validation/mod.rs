@@ -6,23 +6,23 @@ mod strangers;
 
 use super::StudyError;
 use super::calibration::calibrate;
-use super::phase_times::{FAST, FAST_LISTS, LISTS, PRECISIONS, Run, TimedRun, step};
-use crate::console::Failure;
-use crate::frame::Rows;
+use super::phase_times::{BenchRun, FAST, FAST_LISTS, LISTS, PRECISIONS, PhaseTimedRun, step};
+use crate::console::CommandFailure;
+use crate::frame::FrameBuilder;
 use crate::laboratory::running::on_threads;
-use crate::model::host::{Amounts, Around, HostModel, OutOfRange, default_model};
-use crate::results::{Lab, Made, Size};
-use errors::Case;
+use crate::model::host::{Amounts, HostModel, OutOfRange, StepArrays, default_model};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
+use errors::ValidationCase;
 use std::time::Instant;
 use strangers::strangers;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_physics::method::lattice_md::{Part, Phase};
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Overrides;
 
 /// Size of a validation.
-pub(crate) struct Effort {
+pub(crate) struct ValidationSize {
     pub(crate) particles: Vec<usize>,
     /// ρ on cells as wide as the radius.
     pub(crate) occupancies: Vec<f64>,
@@ -45,20 +45,20 @@ const EXECUTIONS: [(&str, Option<Execution>); 7] = [
 /// Run or program outside the calibrated range.
 #[derive(Debug, thiserror::Error)]
 #[error("{case}: {cause}")]
-struct NoPrediction {
+struct OutsideCalibration {
     case: String,
     cause: OutOfRange,
 }
 
-impl NoPrediction {
+impl OutsideCalibration {
     fn of(case: String) -> impl FnOnce(OutOfRange) -> StudyError {
-        |cause| StudyError::Own(Box::new(NoPrediction { case, cause }))
+        |cause| StudyError::Own(Box::new(OutsideCalibration { case, cause }))
     }
 }
 
-impl Reported for NoPrediction {
-    fn class(&self) -> Class {
-        Class::Precondition
+impl Reported for OutsideCalibration {
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Precondition
     }
 }
 
@@ -66,17 +66,17 @@ impl Reported for NoPrediction {
 ///
 /// # Errors
 /// [`StudyError`] if this host cannot be calibrated or a scene breaks.
-pub(crate) fn made(lab: &Lab<'_>, size: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
-    if size == Size::Quick {
+    if size == StudySize::Quick {
         let host = default_model()?;
         let (whose, occupancies) = (format!("the shipped model of {}", host.title), vec![0.2]);
-        let effort = Effort { particles: vec![300], occupancies, rounds: 2, seconds: f64::INFINITY };
+        let effort = ValidationSize { particles: vec![300], occupancies, rounds: 2, seconds: f64::INFINITY };
         return Ok(model_validation(&host, whose, &effort, progress)?);
     }
     let host = calibrate(25.0, |share| progress(0.5 * share))?;
     let (whose, occupancies) = (calibrated_now(&host), vec![0.072, 0.24]);
-    let effort = Effort { particles: vec![150, 4000], occupancies, rounds: 6, seconds: 15.0 };
+    let effort = ValidationSize { particles: vec![150, 4000], occupancies, rounds: 6, seconds: 15.0 };
     Ok(model_validation(&host, whose, &effort, |share| progress(0.5 + 0.5 * share))?)
 }
 
@@ -92,19 +92,19 @@ pub(crate) fn calibrated_now(host: &HostModel) -> String {
 pub(crate) fn model_validation(
     host: &HostModel,
     whose: String,
-    effort: &Effort,
+    effort: &ValidationSize,
     progress: impl Fn(f64) + Sync,
-) -> Result<Made, StudyError> {
-    let runs: Vec<Run> = runs(effort).collect();
+) -> Result<FinishedItem, StudyError> {
+    let runs: Vec<BenchRun> = runs(effort).collect();
     // Before discs are placed, which takes long in large scenes.
     for run in &runs {
-        host.admits(run.particles).map_err(NoPrediction::of(name(run)))?;
+        host.admits(run.particles).map_err(OutsideCalibration::of(name(run)))?;
         if run.rates().is_some() {
             let amounts = Amounts { steps: 1.0, discs: run.particles as f64, ..Amounts::default() };
-            run.predicted(host, &amounts).map_err(NoPrediction::of(name(run)))?;
+            run.predicted(host, &amounts).map_err(OutsideCalibration::of(name(run)))?;
         }
     }
-    let scenes = runs.into_iter().map(|run| TimedRun::new(run, &Overrides::new()));
+    let scenes = runs.into_iter().map(|run| PhaseTimedRun::new(run, &Overrides::new()));
     let mut scenes = scenes.collect::<Result<Vec<_>, _>>()?;
     for scene in &scenes {
         predicted(host, scene)?;
@@ -128,48 +128,48 @@ pub(crate) fn model_validation(
         }
         cases.extend(strangers(host)?);
         progress(1.0);
-        let summary = Rows::of([host])
+        let summary = FrameBuilder::of([host])
             .text("model", |_| &whose)
             .text("instructions", |host| &host.instruction_set)
             .text("state of the machine when it was calibrated", |host| &host.measured.state)
             .count("rounds", |_| done)
             .frame("summary", "The model");
-        Ok(Made::of([summary].into_iter().chain(errors::frames(&cases))).with_seeds([1]))
+        Ok(FinishedItem::of([summary].into_iter().chain(errors::frames(&cases))).with_seeds([1]))
     })
 }
 
-fn runs(effort: &Effort) -> impl Iterator<Item = Run> {
+fn runs(effort: &ValidationSize) -> impl Iterator<Item = BenchRun> {
     let places = effort
         .particles
         .iter()
         .flat_map(|&particles| effort.occupancies.iter().map(move |&occupancy| (particles, occupancy)));
     places.flat_map(|(particles, occupancy)| {
         PRECISIONS.into_iter().flat_map(move |precision| {
-            EXECUTIONS.map(|(execution, _)| Run { particles, occupancy, precision, execution })
+            EXECUTIONS.map(|(execution, _)| BenchRun { particles, occupancy, precision, execution })
         })
     })
 }
 
-fn place(Run { particles, occupancy, precision, .. }: &Run) -> String {
+fn place(BenchRun { particles, occupancy, precision, .. }: &BenchRun) -> String {
     format!("{precision}, NP = {particles}, ρ = {occupancy}")
 }
 
-fn name(run: &Run) -> String {
+fn name(run: &BenchRun) -> String {
     format!("{}, {}", run.execution, place(run))
 }
 
 /// Predicted nanoseconds of every phase.
-fn predicted(host: &HostModel, scene: &TimedRun) -> Result<Vec<f64>, StudyError> {
+fn predicted(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<f64>, StudyError> {
     let run = scene.run;
     let named = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
     let Some(execution) = named.and_then(|(_, execution)| *execution) else {
-        return run.predicted(host, &scene.amounts()).map_err(NoPrediction::of(name(&run)));
+        return run.predicted(host, &scene.amounts()).map_err(OutsideCalibration::of(name(&run)));
     };
     let (programs, lengths) = step(&scene.checked);
     let outlined = programs.iter().map(|it| (it.part, it.program.outlines(), lengths.range(it.length).len()));
     let outlined: Vec<(Part, Outlines, usize)> = outlined.collect();
     let cycle: Vec<(&Outlines, usize)> = outlined.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
-    let around = Around::of_step(&cycle);
+    let around = StepArrays::of_step(&cycle);
     let of_phase = |phase: &Phase| {
         let parts: &[Part] = match phase {
             Phase::Predict => &[Part::Predictor],
@@ -182,12 +182,12 @@ fn predicted(host: &HostModel, scene: &TimedRun) -> Result<Vec<f64>, StudyError>
         let own = outlined.iter().filter(|(part, ..)| parts.contains(part));
         own.map(|(_, outlines, n)| host.program(outlines, *n, execution, &around)).sum()
     };
-    Phase::ALL.iter().map(of_phase).collect::<Result<_, _>>().map_err(NoPrediction::of(name(&run)))
+    Phase::ALL.iter().map(of_phase).collect::<Result<_, _>>().map_err(OutsideCalibration::of(name(&run)))
 }
 
 /// Cases of the phases of a run and of the whole step.
-fn measured(host: &HostModel, scene: &TimedRun) -> Result<Vec<Case>, StudyError> {
-    let phases = Phase::ALL.iter().zip(predicted(host, scene)?).map(|(&phase, predicted)| Case {
+fn measured(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<ValidationCase>, StudyError> {
+    let phases = Phase::ALL.iter().zip(predicted(host, scene)?).map(|(&phase, predicted)| ValidationCase {
         place: place(&scene.run),
         execution: scene.run.execution,
         phase: phase.name(),
@@ -195,7 +195,7 @@ fn measured(host: &HostModel, scene: &TimedRun) -> Result<Vec<Case>, StudyError>
         measured: scene.ns(phase),
     });
     // Not every execution has every phase.
-    let mut cases: Vec<Case> = phases.filter(|case| case.measured > 0.0).collect();
-    cases.extend(Case::step(&cases));
+    let mut cases: Vec<ValidationCase> = phases.filter(|case| case.measured > 0.0).collect();
+    cases.extend(ValidationCase::step(&cases));
     Ok(cases)
 }

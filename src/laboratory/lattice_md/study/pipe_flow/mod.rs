@@ -3,17 +3,17 @@
 mod pictures;
 
 use super::StudyError;
-use crate::console::Failure;
-use crate::frame::{Frame, Rows};
-use crate::results::{Lab, Made, Meter, Size, side_by_side};
-use crate::statistics::Mean;
+use crate::console::CommandFailure;
+use crate::frame::{FrameBuilder, ResultFrame};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize, side_by_side};
+use crate::statistics::MeanWithBar;
 use stripmine_physics::method::lattice_md::keys::{
     EXECUTION, FRICTION, NORMAL_DAMPING, SEARCH, SHEAR_DAMPING,
 };
-use stripmine_physics::method::lattice_md::options::By;
-use stripmine_physics::method::lattice_md::{Document, assemble, model};
+use stripmine_physics::method::lattice_md::options::SearchKind;
+use stripmine_physics::method::lattice_md::{GranularDocument, assemble, model};
 use stripmine_physics::observe::waves::{Directions, directions, fano, histogram, strongest_mode};
-use stripmine_physics::observe::{Observation, Scenery};
+use stripmine_physics::observe::{Observation, SceneProperties};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{DT, GRAVITY, Overrides, PACKING_FRACTION, SEED, STEPS};
 
@@ -31,22 +31,22 @@ const CONTROL: u64 = 40_000;
 const ROWS: usize = 120;
 
 /// Simulates two fifths of the pipe.
-pub(crate) fn short(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    Ok(Runs::of("pipe-small", &Overrides::new(), &[1], false, lab)?.made())
+pub(crate) fn short(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    Ok(PipeRuns::of("pipe-small", &Overrides::new(), &[1], false, lab)?.made())
 }
 
 /// Simulates the whole pipe, with snapshots as in figure 6.
-pub(crate) fn whole(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
-    let runs = Runs::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
+pub(crate) fn whole(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let runs = PipeRuns::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
     let (drawn, made) = (&runs.flows[0], runs.made());
     let made = made.with_picture("figure_5", pictures::piece(drawn));
     Ok(made.with_picture("figure_6", pictures::snapshots(drawn)).with_film(pictures::film(drawn)))
 }
 
 /// Simulates the whole pipe with fewer grains.
-pub(crate) fn thin(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn thin(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
-    Ok(Runs::of("pipe", &thin, &[1, 2], false, lab)?.made())
+    Ok(PipeRuns::of("pipe", &thin, &[1, 2], false, lab)?.made())
 }
 
 /// Overrides for a control without waves: an elastic gas without gravity. Its contacts need the shorter step (s).
@@ -83,8 +83,8 @@ pub(super) struct Flow {
 }
 
 /// Mean over the samples of the last half.
-pub(super) fn late(course: &[f64]) -> Mean {
-    Mean::of_course(&course[course.len() - course.len() / 2..])
+pub(super) fn late(course: &[f64]) -> MeanWithBar {
+    MeanWithBar::of_course(&course[course.len() - course.len() / 2..])
 }
 
 /// Runs a pipe. `progress` receives the completed share.
@@ -98,10 +98,10 @@ pub(super) fn flow(
     mut progress: impl FnMut(f64),
 ) -> Result<Flow, StudyError> {
     let overrides = overrides.clone().set(&SEED, seed);
-    let overrides = overrides.set(&SEARCH, By::NeighborList).set(&EXECUTION, "chained");
-    let checked = Document::load(scene, &overrides.texts())?.check()?;
+    let overrides = overrides.set(&SEARCH, SearchKind::NeighborList).set(&EXECUTION, "chained");
+    let checked = GranularDocument::load(scene, &overrides.texts())?.check()?;
     let mut method = assemble(&checked)?;
-    let scenery = Scenery::of(&model(&checked));
+    let scenery = SceneProperties::of(&model(&checked));
     let (length, origin) = (checked.domain.length(0), checked.domain.origin[0]);
     let scene = &checked.scene;
     let every = (STRIDE / scene.integrator.dt).round() as u64;
@@ -137,25 +137,25 @@ pub(super) fn flow(
 }
 
 /// Runs with different seeds, and the control.
-struct Runs {
+struct PipeRuns {
     title: String,
     flows: Vec<Flow>,
     control: Flow,
 }
 
-impl Runs {
+impl PipeRuns {
     fn of(
         scene: &str,
         overrides: &Overrides,
         seeds: &[u64],
         draws: bool,
-        lab: &Lab<'_>,
-    ) -> Result<Runs, StudyError> {
+        lab: &StudyEnvironment<'_>,
+    ) -> Result<PipeRuns, StudyError> {
         let control = elastic(overrides).set(&STEPS, CONTROL);
         let mut cases: Vec<_> =
             seeds.iter().map(|&seed| (overrides, seed, draws && seed == seeds[0])).collect();
         cases.push((&control, seeds[0], false));
-        let meter = Meter::new(cases.len() as f64, lab.progress);
+        let meter = ProgressMeter::new(cases.len() as f64, lab.progress);
         let mut flows = side_by_side(&cases, |&(overrides, seed, keeps_frames)| {
             let mut before = 0.0;
             let progress = |share| meter.add(share - std::mem::replace(&mut before, share));
@@ -163,13 +163,13 @@ impl Runs {
         })?;
         let control = flows.remove(seeds.len());
         let title = overrides.texts().iter().map(|text| format!(", {text}")).collect::<String>();
-        Ok(Runs { title: format!("Runs of {scene}{title}"), flows, control })
+        Ok(PipeRuns { title: format!("Runs of {scene}{title}"), flows, control })
     }
 
-    fn made(&self) -> Made {
-        let Runs { title, flows, control } = self;
+    fn made(&self) -> FinishedItem {
+        let PipeRuns { title, flows, control } = self;
         let runs = flows.iter().map(|flow| ("pipe", flow)).chain([("elastic gas, no gravity", control)]);
-        let runs = Rows::of(runs)
+        let runs = FrameBuilder::of(runs)
             .text("run", |(name, _)| *name)
             .count("seed", |(_, flow)| flow.seed)
             .number("Fano at the start", 2, |(_, flow)| flow.fano[0])
@@ -188,32 +188,32 @@ impl Runs {
             })
             .text("final state, CRC-32", |(_, flow)| format!("0x{}", flow.checksum))
             .frame("runs", title);
-        let made = Made::of([runs, self.course(), self.summary()]);
+        let made = FinishedItem::of([runs, self.course(), self.summary()]);
         made.with_picture("density_map", pictures::map(&flows[0])).with_seeds(flows.iter().map(|it| it.seed))
     }
 
     /// Fano factors over time.
-    fn course(&self) -> Frame {
+    fn course(&self) -> ResultFrame {
         let samples = self.flows.iter().flat_map(|flow| {
             let samples = flow.times.iter().zip(&flow.fano).step_by(flow.times.len().div_ceil(2 * ROWS));
             samples.map(|sample| (flow.seed, sample))
         });
-        Rows::of(samples)
+        FrameBuilder::of(samples)
             .count("seed", |(seed, _)| *seed)
             .number("time (s)", 2, |(_, (time, _))| **time)
             .number("Fano factor", 2, |(_, (_, fano))| **fano)
             .frame("course", "Variance over mean of the grains in a bin, over time")
     }
 
-    fn summary(&self) -> Frame {
-        let Runs { flows, control, .. } = self;
+    fn summary(&self) -> ResultFrame {
+        let PipeRuns { flows, control, .. } = self;
         let least = |of: &dyn Fn(&Directions) -> f64| {
             flows.iter().map(|flow| of(&flow.directions)).fold(f64::INFINITY, f64::min)
         };
         let beyond_gas = |power: fn(&Directions) -> f64| least(&power) / power(&control.directions);
         // Waves of equal amplitude that move only against gravity also have some power with gravity, because they grow and decay.
         let one_wave = least(&|it| it.forth / it.of_one_wave[1]);
-        Rows::of([()])
+        FrameBuilder::of([()])
             .count("grains", |()| flows[0].grains)
             .number("lasting (s)", 2, |()| flows[0].times.last().copied())
             .number("against gravity over the gas", 2, |()| beyond_gas(|it| it.power * it.back))

@@ -1,9 +1,9 @@
 //! Pictures of a pipe: figures 5 and 6, the density map, and the film.
 
 use super::{Flow, ROWS};
-use crate::report::figure::{Axis, Drawing, Guide, Map, Picture, Shape, Tint};
-use crate::report::section::{Film, Frame};
-use stripmine_physics::particles::{Kind, Particle, Particles};
+use crate::report::figure::{ChartAxis, Drawing, DrawnShape, Guide, HeatMap, Picture, Tint};
+use crate::report::section::{Film, FilmFrame};
+use stripmine_physics::particles::{Particle, ParticleKind, Particles};
 
 /// Time of the first snapshot (s).
 const FROM: f64 = 10.0;
@@ -16,10 +16,10 @@ const SPIN: f64 = 1.0;
 /// Label of the shade scale.
 const SHADE: &str = "rim speed ΩR (m/s)";
 
-fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> Shape {
+fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> DrawnShape {
     let [x, y] = disc.place();
-    let tint = if disc.kind == Kind::Wall { Tint::Still } else { tint };
-    Shape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
+    let tint = if disc.kind == ParticleKind::Wall { Tint::Still } else { tint };
+    DrawnShape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
 }
 
 /// Half the height of the pipe including the walls.
@@ -28,7 +28,7 @@ fn half_height(particles: &Particles) -> f64 {
 }
 
 /// Drawing in metres. The pipe is drawn horizontally, with gravity to the right.
-fn drawing(window: [[f64; 2]; 2], shapes: Vec<Shape>, shades: Option<(f64, f64, String)>) -> Picture {
+fn drawing(window: [[f64; 2]; 2], shapes: Vec<DrawnShape>, shades: Option<(f64, f64, String)>) -> Picture {
     let guide = Some(Guide { unit: "m".into(), gravity: Some([1.0, 0.0]) });
     Picture::Drawing(Drawing { window, width: 1200.0, shapes, shades, guide })
 }
@@ -47,8 +47,8 @@ pub(super) fn piece(flow: &Flow) -> Picture {
         // Discs that leave on the right re-enter on the left.
         [0.0, flow.length].map(|turn| shape(disc, [turn - left, 0.0], Tint::Shade(spin)))
     });
-    let inside = |shape: &Shape| match shape {
-        Shape::Disc { centre, radius, .. } => centre[0] > -radius && centre[0] < length + radius,
+    let inside = |shape: &DrawnShape| match shape {
+        DrawnShape::Disc { centre, radius, .. } => centre[0] > -radius && centre[0] < length + radius,
         _ => true,
     };
     let window = [[0.0, -1.1 * half], [length, 1.1 * half]];
@@ -70,9 +70,9 @@ pub(super) fn snapshots(flow: &Flow) -> Picture {
     for (time, particles) in shown(flow, SNAPSHOTS) {
         let up = rows * pitch;
         let words = format!("{time:.2} s");
-        shapes.push(Shape::Text { centre: [-0.5 * left, up], height: 0.45 * pitch, words });
+        shapes.push(DrawnShape::Text { centre: [-0.5 * left, up], height: 0.45 * pitch, words });
         for rim in [-half, half] {
-            shapes.push(Shape::Line { ends: [[0.0, up + rim], [flow.length, up + rim]] });
+            shapes.push(DrawnShape::Line { ends: [[0.0, up + rim], [flow.length, up + rim]] });
         }
         shapes.extend(particles.grains().iter().map(|disc| shape(disc, [0.0, up], Tint::Hue(0))));
         rows += 1.0;
@@ -91,10 +91,11 @@ pub(super) fn map(flow: &Flow) -> Picture {
     };
     let rows: Vec<Vec<f64>> = flow.density.chunks(stride).map(row).collect();
     let end = flow.times[1] * (rows.len() * stride) as f64;
-    Picture::Map(Map {
-        x: Axis::linear("place along the pipe, the way grains fall", Some("m")).between([0.0, flow.length]),
-        y: Axis::linear("time", Some("s")).between([0.0, end]),
-        value: Axis::linear("density, relative to the mean", None),
+    Picture::Map(HeatMap {
+        x: ChartAxis::linear("place along the pipe, the way grains fall", Some("m"))
+            .between([0.0, flow.length]),
+        y: ChartAxis::linear("time", Some("s")).between([0.0, end]),
+        value: ChartAxis::linear("density, relative to the mean", None),
         rows,
     })
 }
@@ -110,7 +111,7 @@ pub(super) fn film(flow: &Flow) -> Film {
     let half = half_height(start);
     let frames = shown(flow, FRAMES).map(|(time, particles)| {
         let disc = |disc: &Particle| (disc.place().map(rounded), rounded(disc.omega * disc.radius));
-        Frame { time, discs: particles.grains().iter().map(disc).collect() }
+        FilmFrame { time, discs: particles.grains().iter().map(disc).collect() }
     });
     Film {
         title: String::new(),

@@ -1,10 +1,10 @@
 //! Energy of undamped discs without friction, which changes only by the integrator or the precision.
 
-use super::gas::{Gas, SEEDS, place};
-use crate::frame::{Cell, Frame, Rows};
+use super::gas::{BenchGas, SEEDS, place};
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
 use crate::laboratory::lattice_md::study::StudyError;
-use crate::results::{Meter, Progress};
-use crate::statistics::{Spread, slope};
+use crate::results::{Progress, ProgressMeter};
+use crate::statistics::{RunSpread, slope};
 use std::ops::Range;
 use stripmine_physics::method::lattice_md::keys::{
     ENGINE, FRICTION, INTEGRATOR, NORMAL_DAMPING, SHEAR_DAMPING, VALUES,
@@ -27,10 +27,10 @@ const SETTLING: u64 = 500;
 const PRECISIONS: [&str; 3] = ["f64", "mixed", "f32"];
 
 /// Name, values of Gear's scheme (`None` for velocity Verlet), and time step.
-type Stepping = (&'static str, Option<u64>, f64);
+type IntegratorStep = (&'static str, Option<u64>, f64);
 
 /// Compared integrators and steps.
-const STEPPINGS: [Stepping; 4] = [
+const STEPPINGS: [IntegratorStep; 4] = [
     ("velocity Verlet", None, 0.005),
     ("Gear, 6 values", Some(6), 0.005),
     ("velocity Verlet", None, 0.0025),
@@ -38,33 +38,34 @@ const STEPPINGS: [Stepping; 4] = [
 ];
 
 /// Statistics of a case over its seeds. Deviations of the energy are relative to its value at the first sample.
-struct OverSeeds {
+struct SeedStatistics {
     /// Mean time since the first sample and RMS deviation over seeds and samples, for windows that widen with time.
     deviations: Vec<(f64, f64)>,
     /// Largest deviation of a run, deviation at its end, and drift over the run by a least-squares line.
-    spreads: [Spread; 3],
+    spreads: [RunSpread; 3],
 }
 
 /// Frames of every case and of the deviations over time. `progress` receives the completed share.
-pub(super) fn frames(progress: Progress<'_>) -> Result<[Frame; 2], StudyError> {
-    let cases: Vec<(Stepping, &str)> =
+pub(super) fn frames(progress: Progress<'_>) -> Result<[ResultFrame; 2], StudyError> {
+    let cases: Vec<(IntegratorStep, &str)> =
         STEPPINGS.iter().flat_map(|&stepping| PRECISIONS.map(|precision| (stepping, precision))).collect();
     let runs: Vec<_> = cases.iter().flat_map(|&case| SEEDS.map(|seed| (case, seed))).collect();
-    let deviations = Meter::new(runs.len() as f64, progress)
+    let deviations = ProgressMeter::new(runs.len() as f64, progress)
         .each(&runs, |&((stepping, precision), seed)| deviations(stepping, precision, seed, STEPS))?;
     let over = deviations.chunks(SEEDS.len()).zip(&cases).map(|(runs, ((.., dt), _))| over_seeds(*dt, runs));
     let cases: Vec<_> = cases.iter().zip(over).collect();
     let samples = cases.iter().flat_map(|(case, over)| over.deviations.iter().map(move |at| (case, at)));
     let headings = ["largest deviation (10⁻⁶)", "deviation at the end (10⁻⁶)", "drift (10⁻⁶)"];
-    let with_error = |it: Spread| Cell::with_error(1e6 * it.mean, it.error.map(|error| 1e6 * error), 2);
+    let with_error =
+        |it: RunSpread| TableCell::with_error(1e6 * it.mean, it.error.map(|error| 1e6 * error), 2);
     Ok([
-        Rows::of(&cases)
+        FrameBuilder::of(&cases)
             .text("integrator", |(((name, ..), _), _)| *name)
             .number("dt", 4, |(((.., dt), _), _)| *dt)
             .text("precision", |((_, precision), _)| *precision)
             .cells(headings, |(_, over)| over.spreads.map(with_error))
             .frame("energy", "Energy over 100,000 undamped steps"),
-        Rows::of(samples)
+        FrameBuilder::of(samples)
             .text("integrator", |(((name, ..), _), _)| *name)
             .number("dt", 4, |(((.., dt), _), _)| *dt)
             .text("precision", |((_, precision), _)| *precision)
@@ -75,11 +76,12 @@ pub(super) fn frames(progress: Progress<'_>) -> Result<[Frame; 2], StudyError> {
 }
 
 /// Statistics over the runs of a case with the step `dt`.
-fn over_seeds(dt: f64, runs: &[Vec<f64>]) -> OverSeeds {
+fn over_seeds(dt: f64, runs: &[Vec<f64>]) -> SeedStatistics {
     let samples = runs.iter().map(Vec::len).min().unwrap_or(0);
     let times: Vec<f64> = (1..=samples).map(|sample| (sample as u64 * STRIDE) as f64 * dt).collect();
-    let over =
-        |figure: &dyn Fn(&[f64]) -> f64| Spread::of(&runs.iter().map(|run| figure(run)).collect::<Vec<_>>());
+    let over = |figure: &dyn Fn(&[f64]) -> f64| {
+        RunSpread::of(&runs.iter().map(|run| figure(run)).collect::<Vec<_>>())
+    };
     let mean = |window: &Range<usize>, value: &dyn Fn(usize) -> f64| {
         window.clone().map(value).sum::<f64>() / window.len() as f64
     };
@@ -87,7 +89,7 @@ fn over_seeds(dt: f64, runs: &[Vec<f64>]) -> OverSeeds {
         |sample: usize| runs.iter().map(|run| run[sample] * run[sample]).sum::<f64>() / runs.len() as f64;
     let deviations =
         windows(samples).map(|it| (mean(&it, &|sample| times[sample]), mean(&it, &mean_square).sqrt()));
-    OverSeeds {
+    SeedStatistics {
         deviations: deviations.collect(),
         spreads: [
             over(&|run| run.iter().fold(0.0, |largest, deviation| deviation.abs().max(largest))),
@@ -106,21 +108,21 @@ fn windows(count: usize) -> impl Iterator<Item = Range<usize>> {
 
 /// Energy deviations of one run at every sample after the first.
 fn deviations(
-    (_, values, dt): Stepping,
+    (_, values, dt): IntegratorStep,
     precision: &str,
     seed: u64,
     steps: u64,
 ) -> Result<Vec<f64>, StudyError> {
     let place = place(PARTICLES, PACKING_FRACTION, seed);
     let undamped = place.set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0).set(&FRICTION, 0.0);
-    let discs = Gas::equilibrated(&undamped)?;
+    let discs = BenchGas::equilibrated(&undamped)?;
     let overrides = undamped.set(&DT, dt).set(&ENGINE, EngineChoice::Fast).set(&PRECISION, precision);
     let overrides = match values {
         Some(values) => overrides.set(&VALUES, values),
         None => overrides.set(&INTEGRATOR, IntegratorKind::VelocityVerlet),
     };
-    let mut gas = Gas::begin(&overrides, Some(&discs))?;
-    let energy = |gas: &Gas| {
+    let mut gas = BenchGas::begin(&overrides, Some(&discs))?;
+    let energy = |gas: &BenchGas| {
         Observation::of(gas.method.steps(), gas.method.time(), &gas.method.particles(), &gas.scenery).energy()
     };
     gas.advance(SETTLING)?;
@@ -148,7 +150,8 @@ mod tests {
     #[test]
     fn statistics_cover_seeds_and_windows() {
         let runs = [vec![1.0, -1.0, 3.0, 4.0], vec![1.0, 1.0, -3.0, -4.0]];
-        let OverSeeds { deviations, spreads: [largest, last, drift] } = over_seeds(STEPPINGS[0].2, &runs);
+        let SeedStatistics { deviations, spreads: [largest, last, drift] } =
+            over_seeds(STEPPINGS[0].2, &runs);
         assert_eq!(deviations, [(2.5, 1.0), (5.0, 1.0), (8.75, 12.5f64.sqrt())]);
         assert_eq!((largest.mean, last.mean, last.highest), (4.0, 0.0, 4.0));
         assert!((drift.highest - 1.3 * 4.0).abs() < 1e-12, "{drift:?}");

@@ -1,7 +1,7 @@
 //! Force errors on one configuration of discs, against the size of the box.
 
-use super::gas::{Gas, PACKING_FRACTIONS, place};
-use crate::frame::{Frame, Rows};
+use super::gas::{BenchGas, PACKING_FRACTIONS, place};
+use crate::frame::{FrameBuilder, ResultFrame};
 use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates::{self, Absolute, CellRelative};
 use stripmine_physics::method::lattice_md::keys::ENGINE;
@@ -9,10 +9,10 @@ use stripmine_physics::observe::contacts;
 use stripmine_physics::scene::PRECISION;
 
 /// Name, `machine.precision`, `machine.engine` and the origin of positions.
-type Variant = (&'static str, &'static str, &'static str, Coordinates);
+type ForceVariant = (&'static str, &'static str, &'static str, Coordinates);
 
 /// Variants compared with the fast engine in f64; programs are chained.
-const VARIANTS: [Variant; 7] = [
+const VARIANTS: [ForceVariant; 7] = [
     ("mixed, fast", "mixed", "fast", CellRelative),
     ("f32, fast", "f32", "fast", CellRelative),
     ("mixed, programs, from the cell", "mixed", "programs", CellRelative),
@@ -26,7 +26,7 @@ const VARIANTS: [Variant; 7] = [
 const PARTICLES: [usize; 3] = [1000, 10_000, 100_000];
 
 /// Force errors of the variants on one configuration of discs.
-struct Configuration {
+struct ForceErrors {
     packing_fraction: f64,
     discs: usize,
     /// Longer side of the box (diameters).
@@ -37,7 +37,7 @@ struct Configuration {
 }
 
 /// Frame of every variant on every configuration. `progress` receives the completed share.
-pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
+pub(super) fn frame(progress: impl Fn(f64)) -> Result<ResultFrame, StudyError> {
     let mut all = Vec::new();
     for packing_fraction in PACKING_FRACTIONS {
         for particles in PARTICLES {
@@ -46,7 +46,7 @@ pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
         }
     }
     let each = all.iter().flat_map(|it| VARIANTS.iter().zip(&it.errors).map(move |found| (it, found)));
-    Ok(Rows::of(each)
+    Ok(FrameBuilder::of(each)
         .number("packing fraction", 2, |(it, _)| it.packing_fraction)
         .count("discs", |(it, _)| it.discs)
         .number("side (diameters)", 0, |(it, _)| it.side)
@@ -57,12 +57,12 @@ pub(super) fn frame(progress: impl Fn(f64)) -> Result<Frame, StudyError> {
         .frame("forces", "Errors of the forces on one configuration"))
 }
 
-fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Configuration, StudyError> {
+fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<ForceErrors, StudyError> {
     let place = place(count, packing_fraction, 1);
-    let discs = Gas::equilibrated(&place)?;
-    let computed = |(_, precision, engine, coordinates): Variant| {
+    let discs = BenchGas::equilibrated(&place)?;
+    let computed = |(_, precision, engine, coordinates): ForceVariant| {
         let overrides = place.clone().set(&PRECISION, precision).set(&ENGINE, engine);
-        Gas::seen_from(coordinates, &overrides, Some(&discs))
+        BenchGas::seen_from(coordinates, &overrides, Some(&discs))
     };
     let reference = computed(("f64, fast", "f64", "fast", CellRelative))?;
     let (exact, domain) = (reference.method.forces(), reference.scenery.domain);
@@ -70,7 +70,7 @@ fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<Configura
     for (found, variant) in found.iter_mut().zip(VARIANTS) {
         *found = errors(&exact, &computed(variant)?.method.forces());
     }
-    Ok(Configuration {
+    Ok(ForceErrors {
         packing_fraction,
         discs: discs.len(),
         side: domain.length(0).max(domain.length(1)),
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn cell_relative_errors_are_independent_of_the_box() {
         let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
-        let rms = |it: &Configuration, name: &str| {
+        let rms = |it: &ForceErrors, name: &str| {
             it.errors[VARIANTS.iter().position(|(variant, ..)| *variant == name).unwrap()][0]
         };
         for name in ["mixed, fast", "f32, fast", "mixed, programs, from the cell"] {

@@ -2,12 +2,12 @@
 
 use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates;
-use stripmine_physics::method::lattice_md::Document;
-use stripmine_physics::method::lattice_md::Grains;
+use stripmine_physics::method::lattice_md::GranularDocument;
+use stripmine_physics::method::lattice_md::SteppedGrains;
 use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR, SEARCH};
-use stripmine_physics::method::lattice_md::options::{By, EngineChoice, IntegratorKind};
+use stripmine_physics::method::lattice_md::options::{EngineChoice, IntegratorKind, SearchKind};
 use stripmine_physics::method::lattice_md::{assemble, model};
-use stripmine_physics::observe::Scenery;
+use stripmine_physics::observe::SceneProperties;
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, SEED};
 
@@ -19,15 +19,15 @@ pub(super) const SEEDS: [u64; 3] = [1, 2, 3];
 pub(super) const EQUILIBRATION: u64 = 1000;
 
 /// Running bench scene.
-pub(super) struct Gas {
-    pub(super) method: Grains,
-    pub(super) scenery: Scenery,
+pub(super) struct BenchGas {
+    pub(super) method: SteppedGrains,
+    pub(super) scenery: SceneProperties,
 }
 
-impl Gas {
+impl BenchGas {
     /// Starts the bench scene with overrides, from `discs` if given.
-    pub(super) fn begin(overrides: &Overrides, discs: Option<&Particles>) -> Result<Gas, StudyError> {
-        Gas::seen_from(Coordinates::CellRelative, overrides, discs)
+    pub(super) fn begin(overrides: &Overrides, discs: Option<&Particles>) -> Result<BenchGas, StudyError> {
+        BenchGas::seen_from(Coordinates::CellRelative, overrides, discs)
     }
 
     /// Starts with positions relative to the cell or to the corner of the box, even if `scene check` rejects single precision because
@@ -36,19 +36,19 @@ impl Gas {
         coordinates: Coordinates,
         overrides: &Overrides,
         discs: Option<&Particles>,
-    ) -> Result<Gas, StudyError> {
-        let mut checked = Document::load("bench", &overrides.texts())?.check()?;
+    ) -> Result<BenchGas, StudyError> {
+        let mut checked = GranularDocument::load("bench", &overrides.texts())?.check()?;
         checked.scene.machine.coordinates = coordinates;
         if let Some(discs) = discs {
             checked.particles = discs.clone();
         }
-        Ok(Gas { method: assemble(&checked)?, scenery: Scenery::of(&model(&checked)) })
+        Ok(BenchGas { method: assemble(&checked)?, scenery: SceneProperties::of(&model(&checked)) })
     }
 
     /// State after [`EQUILIBRATION`] steps in f64 with velocity Verlet.
     pub(super) fn equilibrated(overrides: &Overrides) -> Result<Particles, StudyError> {
         let fast = overrides.clone().set(&ENGINE, EngineChoice::Fast);
-        let mut gas = Gas::begin(&fast.set(&INTEGRATOR, IntegratorKind::VelocityVerlet), None)?;
+        let mut gas = BenchGas::begin(&fast.set(&INTEGRATOR, IntegratorKind::VelocityVerlet), None)?;
         gas.advance(EQUILIBRATION)?;
         Ok(gas.method.particles())
     }
@@ -61,5 +61,5 @@ impl Gas {
 /// Overrides for the number of discs, the packing fraction and the seed.
 pub(super) fn place(count: usize, packing_fraction: f64, seed: u64) -> Overrides {
     let scene = Overrides::new().set(&COUNT, count).set(&PACKING_FRACTION, packing_fraction);
-    scene.set(&SEED, seed).set(&SEARCH, By::Lattice)
+    scene.set(&SEED, seed).set(&SEARCH, SearchKind::Lattice)
 }

@@ -7,12 +7,12 @@ mod forces;
 mod gas;
 mod trajectories;
 
-use crate::console::Failure;
-use crate::results::{Lab, Made, Size};
+use crate::console::CommandFailure;
+use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use gas::SEEDS;
 
 /// Measures force errors, energies of undamped gases, and divergence of trajectories.
-pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
+pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     // Approximate shares of the time.
     let (forces_end, trajectories_end) = (0.3, 0.4);
     let forces = forces::frame(|share| (lab.progress)(forces_end * share))?;
@@ -20,5 +20,5 @@ pub(crate) fn made(lab: &Lab<'_>, _: Size) -> Result<Made, Failure> {
     (lab.progress)(trajectories_end);
     let rest = |share| (lab.progress)(trajectories_end + (1.0 - trajectories_end) * share);
     let frames = [forces].into_iter().chain(energy::frames(&rest)?).chain(trajectories);
-    Ok(Made::of(frames).with_seeds(SEEDS))
+    Ok(FinishedItem::of(frames).with_seeds(SEEDS))
 }

@@ -1,10 +1,10 @@
 //! Divergence of trajectories from one start in different precisions: collisions amplify every error.
 
-use super::gas::{Gas, PACKING_FRACTIONS, SEEDS, place};
-use crate::frame::{Cell, Frame, Rows};
+use super::gas::{BenchGas, PACKING_FRACTIONS, SEEDS, place};
+use crate::frame::{FrameBuilder, ResultFrame, TableCell};
 use crate::laboratory::lattice_md::study::StudyError;
 use crate::results::side_by_side;
-use crate::statistics::{Spread, slope};
+use crate::statistics::{RunSpread, slope};
 use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR};
 use stripmine_physics::method::lattice_md::options::IntegratorKind;
 use stripmine_physics::scene::{self, Overrides, PRECISION};
@@ -26,7 +26,7 @@ const PARTED: f64 = 10.0;
 const LOST: f64 = 0.02;
 
 /// Frames of every variant and of its distances over time.
-pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
+pub(super) fn frames() -> Result<[ResultFrame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
     let runs =
@@ -41,20 +41,20 @@ pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
             let mean_square = |sample: usize| square(sample).sum::<f64>() / runs.len() as f64;
             let distances: Vec<f64> = (0..times.len()).map(|sample| mean_square(sample).sqrt()).collect();
             let rates: Vec<f64> = runs.iter().map(|run| growth(&times, &run[rival])).collect();
-            all.push((*fraction, variant, distances, Spread::of(&rates)));
+            all.push((*fraction, variant, distances, RunSpread::of(&rates)));
         }
     }
     let lost = |distances: &[f64]| Some(times[distances.iter().position(|&distance| distance >= LOST)?]);
     let samples = all.iter().flat_map(|it| it.2.iter().zip(&times).map(move |sample| (it, sample)));
     Ok([
-        Rows::of(&all)
+        FrameBuilder::of(&all)
             .number("packing fraction", 2, |(fraction, ..)| *fraction)
             .text("variant", |(_, variant, ..)| *variant)
             .short(format!("distance after {STRIDE} steps (diameters)"), |(_, _, distances, _)| distances[0])
-            .cell("rate of growth (1/time)", |(.., rate)| Cell::with_error(rate.mean, rate.error, 3))
+            .cell("rate of growth (1/time)", |(.., rate)| TableCell::with_error(rate.mean, rate.error, 3))
             .number(format!("time until {LOST} diameters"), 1, |(_, _, distances, _)| lost(distances))
             .frame("trajectories", "Divergence of trajectories from those of the fast engine in f64"),
-        Rows::of(samples)
+        FrameBuilder::of(samples)
             .number("packing fraction", 2, |((fraction, ..), _)| *fraction)
             .text("variant", |((_, variant, ..), _)| *variant)
             .number("time", 1, |(_, (_, time))| **time)
@@ -65,10 +65,10 @@ pub(super) fn frames() -> Result<[Frame; 2], StudyError> {
 
 /// RMS distance between the discs of each variant and of the reference, at every sample.
 fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], StudyError> {
-    let discs = Gas::equilibrated(place)?;
+    let discs = BenchGas::equilibrated(place)?;
     let begin = |[_, precision, engine]: [&str; 3]| {
         let overrides = place.clone().set(&INTEGRATOR, IntegratorKind::VelocityVerlet).set(&scene::DT, DT);
-        Gas::begin(&overrides.set(&PRECISION, precision).set(&ENGINE, engine), Some(&discs))
+        BenchGas::begin(&overrides.set(&PRECISION, precision).set(&ENGINE, engine), Some(&discs))
     };
     let mut reference = begin(["", "f64", "fast"])?;
     let mut rivals = Vec::new();

@@ -1,12 +1,12 @@
 //! State of the fast engine in a checkpoint, and resumption from it.
 
 use super::leaving::leaving;
-use super::lists::Lists;
-use super::queue::Queue;
-use super::{Expected, Fast, LISTED, WALL};
-use crate::io::checkpoint::Column;
+use super::lists::DiscNeighbourLists;
+use super::queue::EventQueue;
+use super::{ExpectedEvent, Fast, LISTED, WALL};
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
-use stripmine_kernels::flight::{Disc, MOST_PARTNERS, ROW_UNIT};
+use stripmine_kernels::flight::{FlyingDisc, MOST_PARTNERS, ROW_UNIT};
 use stripmine_kernels::isa::AlignedColumn;
 
 /// Checkpoint columns of the registered positions.
@@ -22,16 +22,20 @@ impl Fast {
     /// Returns the state for a checkpoint, in the order of the discs' numbers.
     pub(super) fn kept(&self) -> Snapshot {
         let mut kept = Snapshot::default();
-        let by_number =
-            |of: &dyn Fn(u32) -> f64| Column::F64(self.places.iter().map(|&place| of(place)).collect());
+        let by_number = |of: &dyn Fn(u32) -> f64| {
+            CheckpointColumn::F64(self.places.iter().map(|&place| of(place)).collect())
+        };
         for (axis, name) in REGISTERED.into_iter().enumerate() {
             kept.add_column(name, by_number(&|place| self.lists.place(place)[axis]));
         }
         kept.add_column("expected.time", by_number(&|place| self.queue.times()[place as usize]));
         let expected = || self.places.iter().map(|&place| self.partners[place as usize]);
         let number = |with: u32| if with >= WALL[0] { with } else { self.numbers[with as usize] };
-        kept.add_column("expected.with", Column::U32(expected().map(|it| number(it.with)).collect()));
-        kept.add_column("expected.events", Column::U32(expected().map(|it| it.events).collect()));
+        kept.add_column(
+            "expected.with",
+            CheckpointColumn::U32(expected().map(|it| number(it.with)).collect()),
+        );
+        kept.add_column("expected.events", CheckpointColumn::U32(expected().map(|it| it.events).collect()));
         kept.add_sum("engine.time", self.time);
         kept.add_sum("engine.displacement_limit", self.displacement_limit);
         kept.add_count("engine.stride", self.lists.stride() as u64);
@@ -42,7 +46,7 @@ impl Fast {
     }
 
     /// Resumes with discs from the state of [`kept`](Self::kept). Returns a message if it does not fit them.
-    pub(super) fn take_up(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
+    pub(super) fn take_up(&mut self, discs: Vec<FlyingDisc>, kept: &Snapshot) -> Result<(), String> {
         let count = discs.len();
         let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];
         let origin = self.arena.domain.origin;
@@ -86,17 +90,23 @@ impl Fast {
         };
         let places: Vec<[f64; 2]> = self.numbers.iter().map(|&number| place_of(number)).collect();
         let (domain, discs) = (self.arena.domain, &self.discs);
-        let mut lists =
-            Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride as usize);
+        let mut lists = DiscNeighbourLists::new(
+            domain,
+            count,
+            self.displacement_limit,
+            self.largest,
+            LISTED,
+            stride as usize,
+        );
         let full = lists.begin(&places, |disc| discs[disc as usize].radius);
         full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
         self.lists = lists;
         self.check_expectations(times)?;
-        self.queue = Queue::new(count);
+        self.queue = EventQueue::new(count);
         for (place, &number) in self.numbers.iter().enumerate() {
             let expects = with[number as usize];
             let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };
-            self.partners[place] = Expected { with, events: events[number as usize] };
+            self.partners[place] = ExpectedEvent { with, events: events[number as usize] };
             self.queue.set(place, number, times[number as usize]);
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! Flight distances: the mean free path, and the time at which a disc leaves the range of its list.
 
 use crate::method::hard_disks::event::Arena;
-use stripmine_kernels::flight::Disc;
+use stripmine_kernels::flight::FlyingDisc;
 
 /// Mean free path (length) of `count` discs of a radius (length) in an area (length²), by Enskog's theory with Henderson's contact
 /// value. In an infinite area each disc is assumed to have one square of its diameter.
@@ -17,7 +17,7 @@ pub(super) fn free_path(count: f64, radius: f64, area: f64) -> f64 {
 #[inline]
 pub(super) fn leaving(
     arena: &Arena,
-    disc: &Disc,
+    disc: &FlyingDisc,
     registered: [f64; 2],
     displacement_limit: f64,
     (now, next): (f64, f64),

@@ -4,7 +4,7 @@
 //! A disc within `displacement_limit` of its registered position meets only discs registered within the sum of the radii and twice
 //! the displacement limit. Those are in its list, and it is in theirs.
 
-use crate::domain::{Domain, Side};
+use crate::domain::{BoxSide, Domain};
 use stripmine_kernels::flight::ROW_UNIT;
 use stripmine_kernels::isa::AlignedColumn;
 
@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 const FILLED: f64 = 0.6;
 
 #[derive(Clone, Debug)]
-pub(crate) struct Lists {
+pub(crate) struct DiscNeighbourLists {
     domain: Domain,
     displacement_limit: f64,
     /// Registered position of each disc (length).
@@ -23,13 +23,13 @@ pub(crate) struct Lists {
     /// is therefore a valid number, as a list never holds all discs.
     rows: AlignedColumn<u32>,
     stride: usize,
-    cells: Cells,
+    cells: RegistrationCells,
 }
 
 /// Linked cells of the registered positions. Rows and columns of cells wrap around the grid, so an infinite side needs no more cells.
 /// Discs that share a cell by wrapping are far apart, and the distance check excludes them.
 #[derive(Clone, Debug)]
-struct Cells {
+struct RegistrationCells {
     counts: [usize; 2],
     edge: [f64; 2],
     /// First disc of each cell, row by row.
@@ -66,7 +66,7 @@ pub(crate) fn displacement_limit(
     (displacement_limit >= 0.05 * largest).then_some(displacement_limit)
 }
 
-impl Lists {
+impl DiscNeighbourLists {
     /// Creates lists without discs, with space for about `most` discs each; `largest` is the largest radius (length). Rows have at least
     /// `stride` entries, a multiple of [`ROW_UNIT`], one of which is the count.
     pub(super) fn new(
@@ -76,16 +76,16 @@ impl Lists {
         largest: f64,
         most: f64,
         stride: usize,
-    ) -> Lists {
+    ) -> DiscNeighbourLists {
         let sight = 2.0 * (largest + displacement_limit) * (1.0 + 1e-9);
         let least = ((most / FILLED) as usize + 1).next_multiple_of(ROW_UNIT);
-        Lists {
+        DiscNeighbourLists {
             domain,
             displacement_limit,
             places: AlignedColumn::filled(10, [0.0; 2], count),
             rows: empty_rows(count, stride.max(least)),
             stride: stride.max(least),
-            cells: Cells::new(&domain, count, sight / AROUND as f64),
+            cells: RegistrationCells::new(&domain, count, sight / AROUND as f64),
         }
     }
 
@@ -224,20 +224,20 @@ fn clear(row: &mut [u32], disc: u32) {
     row[row.len() - 1] = 0;
 }
 
-impl Cells {
-    fn new(domain: &Domain, count: usize, least_edge: f64) -> Cells {
+impl RegistrationCells {
+    fn new(domain: &Domain, count: usize, least_edge: f64) -> RegistrationCells {
         let most = (count as f64).sqrt().max(8.0);
         let counts = [0, 1].map(|axis| match domain.sides[axis] {
-            Side::Open | Side::Flat => most as usize,
-            Side::Periodic(side) | Side::Closed(side) => ((side / least_edge) as usize).max(1),
+            BoxSide::Open | BoxSide::Flat => most as usize,
+            BoxSide::Periodic(side) | BoxSide::Closed(side) => ((side / least_edge) as usize).max(1),
         });
         let edge = [0, 1].map(|axis| match domain.sides[axis] {
-            Side::Open | Side::Flat => least_edge,
-            Side::Periodic(side) | Side::Closed(side) => side / counts[axis] as f64,
+            BoxSide::Open | BoxSide::Flat => least_edge,
+            BoxSide::Periodic(side) | BoxSide::Closed(side) => side / counts[axis] as f64,
         });
         // With fewer cells along a side than a search covers, some would be visited twice.
         let counts = counts.map(|along| along.max(2 * AROUND as usize + 1));
-        Cells {
+        RegistrationCells {
             counts,
             edge,
             first: AlignedColumn::filled(12, NONE, counts[0] * counts[1]),
@@ -310,13 +310,16 @@ impl Cells {
 mod tests {
     use super::*;
     use rand::RngExt;
-    use stripmine_kernels::noise::{Purpose, Stream};
+    use stripmine_kernels::noise::{RandomPurpose, Stream};
 
     /// Compared with all pairs as discs move, in boxes of every kind of side.
     #[test]
     fn lists_match_a_search_over_pairs() {
-        let mut stream = Stream::new(11, Purpose::Test, 0);
-        let open = Domain { origin: [-3.0, 2.0, 0.0], sides: [Side::Periodic(30.0), Side::Open, Side::Flat] };
+        let mut stream = Stream::new(11, RandomPurpose::Test, 0);
+        let open = Domain {
+            origin: [-3.0, 2.0, 0.0],
+            sides: [BoxSide::Periodic(30.0), BoxSide::Open, BoxSide::Flat],
+        };
         let planar = |periodic| Domain::planar([-3.0, 2.0], [30.0, 25.0], periodic);
         let mut pairs = 0;
         for domain in [open, planar([true, true]), planar([true, false])] {
@@ -329,7 +332,7 @@ mod tests {
             };
             let mut places: Vec<[f64; 2]> = (0..count).map(|_| draw()).collect();
             let radius = |disc: u32| radii[disc as usize];
-            let mut lists = Lists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
+            let mut lists = DiscNeighbourLists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
             lists.begin(&places, radius).unwrap();
             for moved in 0..400 {
                 let disc = moved % count;

@@ -27,17 +27,17 @@ mod leaving;
 mod lists;
 mod queue;
 
-use crate::domain::Side;
+use crate::domain::BoxSide;
 use crate::method::Snapshot;
-use crate::method::hard_disks::engine::{Engine, EngineError, Occurred};
+use crate::method::hard_disks::engine::{EngineError, EventEngine, ExecutedEvent};
 use crate::method::hard_disks::event::Arena;
 use crate::method::hard_disks::operations::Operations;
 use leaving::{free_path, leaving};
-use lists::Lists;
-use queue::Queue;
+use lists::DiscNeighbourLists;
+use queue::EventQueue;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{Registers, Task, dispatch_native};
-use stripmine_kernels::flight::{Disc, Earliest, MOST_PARTNERS, ROW_UNIT, earliest};
+use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_native};
+use stripmine_kernels::flight::{EarliestCollision, FlyingDisc, MOST_PARTNERS, ROW_UNIT, earliest};
 use stripmine_kernels::isa::AlignedColumn;
 
 /// Average number of discs in a list.
@@ -52,15 +52,15 @@ const RENEWAL: u32 = u32::MAX;
 
 /// Expected next event of a disc.
 #[derive(Clone, Copy, Debug)]
-struct Expected {
+struct ExpectedEvent {
     /// Index in memory of another disc, or one of the codes above.
     with: u32,
     /// Event count of the other disc at the prediction. If it is higher when the event is due, the prediction is invalid.
     events: u32,
 }
 
-impl Expected {
-    const RENEWAL: Expected = Expected { with: RENEWAL, events: 0 };
+impl ExpectedEvent {
+    const RENEWAL: ExpectedEvent = ExpectedEvent { with: RENEWAL, events: 0 };
 }
 
 /// Fast engine with its discs.
@@ -68,11 +68,11 @@ pub(crate) struct Fast {
     arena: Arena,
     set: InstructionSet,
     /// Discs in the order of memory.
-    discs: AlignedColumn<Disc>,
+    discs: AlignedColumn<FlyingDisc>,
     /// Number of each disc in memory, and index in memory of each number.
     numbers: AlignedColumn<u32>,
     places: Vec<u32>,
-    lists: Lists,
+    lists: DiscNeighbourLists,
     displacement_limit: f64,
     largest: f64,
     /// True if all radii are equal.
@@ -80,8 +80,8 @@ pub(crate) struct Fast {
     /// Distance ahead of its position at which a disc is registered (length).
     flight: f64,
     /// Times of the next events, and their partners.
-    queue: Queue,
-    partners: AlignedColumn<Expected>,
+    queue: EventQueue,
+    partners: AlignedColumn<ExpectedEvent>,
     /// Scratch of a prediction: collision times with the discs of the list.
     met: Box<[f64; MOST_PARTNERS]>,
     /// Time of the last event.
@@ -100,7 +100,7 @@ impl Fast {
     /// [`EngineError`] if a disc has more neighbours than a list can hold.
     pub(super) fn new(
         arena: Arena,
-        discs: Vec<Disc>,
+        discs: Vec<FlyingDisc>,
         set: InstructionSet,
         time: f64,
     ) -> Result<Fast, EngineError> {
@@ -111,7 +111,7 @@ impl Fast {
         let alike = discs.iter().all(|disc| disc.radius == largest);
         let flight = 0.9 * displacement_limit.min(free_path(count as f64, largest, arena.domain.area()));
         let mut engine = Fast {
-            lists: Lists::new(arena.domain, 0, displacement_limit, largest, LISTED, 0),
+            lists: DiscNeighbourLists::new(arena.domain, 0, displacement_limit, largest, LISTED, 0),
             arena,
             set,
             discs: AlignedColumn::new(0, discs),
@@ -121,8 +121,8 @@ impl Fast {
             largest,
             alike,
             flight,
-            queue: Queue::new(count),
-            partners: AlignedColumn::filled(2, Expected::RENEWAL, count),
+            queue: EventQueue::new(count),
+            partners: AlignedColumn::filled(2, ExpectedEvent::RENEWAL, count),
             met: Box::new([f64::INFINITY; MOST_PARTNERS]),
             time,
             renewals: 0,
@@ -142,7 +142,8 @@ impl Fast {
         let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.registered(disc, time)).collect();
         loop {
             let (domain, discs) = (self.arena.domain, &self.discs);
-            self.lists = Lists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride);
+            self.lists =
+                DiscNeighbourLists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride);
             let Err(full) = self.lists.begin(&places, |disc| discs[disc as usize].radius) else { break };
             stride = self.lists.stride() + ROW_UNIT;
             if stride > MOST_PARTNERS {
@@ -152,19 +153,19 @@ impl Fast {
                 (self.displacement_limit, stride) = (0.7 * self.displacement_limit, 0);
             }
         }
-        self.queue = Queue::new(count);
-        self.partners.fill(Expected::RENEWAL);
+        self.queue = EventQueue::new(count);
+        self.partners.fill(ExpectedEvent::RENEWAL);
         self.renewals += count as u64;
         self.operations.cell_updates += count as u64;
         self.sorted_until = self.events + SORTED_AFTER * count as u64;
-        let found = dispatch_native(self.set, All { engine: self, time });
+        let found = dispatch_native(self.set, PredictAllTask { engine: self, time });
         found.map_err(|_| EngineError::NoInstructions(self.set))
     }
 
     /// Sorts discs in memory by position, by interleaving the bits of their cell coordinates (Morton order).
     fn sort(&mut self, time: f64) {
         let edge = 2.0 * (self.largest + self.displacement_limit);
-        let key = |disc: &Disc| {
+        let key = |disc: &FlyingDisc| {
             let at = self.arena.place(disc, time);
             let [x, y] =
                 [0, 1].map(|axis| spread(((at[axis] - self.arena.domain.origin[axis]) / edge) as u32));
@@ -188,7 +189,7 @@ impl Fast {
         let Fast { arena, discs, numbers, lists, queue, partners, met, operations, .. } = self;
         let (row, count) = lists.row(disc);
         let found = earliest(registers, &arena.space, discs, queue.times(), (disc, row, count), now, met);
-        let Earliest { time, partners: first, mut surprised } = found;
+        let EarliestCollision { time, partners: first, mut surprised } = found;
         operations.predictions += count as u64;
         operations.searches += 1;
         operations.queue_moves += 1;
@@ -222,14 +223,14 @@ impl Fast {
                 || expected >= WALL[0]
                 || expected != disc && numbers[disc as usize] < numbers[expected as usize];
             if is_before {
-                partners[other as usize] = Expected { with: disc, events: own.events as u32 };
+                partners[other as usize] = ExpectedEvent { with: disc, events: own.events as u32 };
                 queue.set(other as usize, numbers[other as usize], time);
                 operations.queue_moves += 1;
             }
             surprised &= surprised - 1;
         }
         let events = discs.get(with as usize).map_or(0, |other| other.events as u32);
-        partners[disc as usize] = Expected { with, events };
+        partners[disc as usize] = ExpectedEvent { with, events };
         queue.set(disc as usize, numbers[disc as usize], next);
     }
 
@@ -249,14 +250,14 @@ impl Fast {
 
     /// Position at which a disc is registered: ahead of it by its expected flight before it leaves its list or collides.
     #[inline(always)]
-    fn registered(&self, disc: &Disc, time: f64) -> [f64; 2] {
+    fn registered(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
         let ([x, y], [u, v]) = (disc.at(&self.arena.space, time), disc.velocity_at(&self.arena.space, time));
         let speed = (u * u + v * v).sqrt();
         let flight = if speed > 0.0 { self.flight / speed } else { 0.0 };
         let ahead = [x + flight * u, y + flight * v];
         let domain = &self.arena.domain;
         domain.wrapped([0, 1].map(|axis| match domain.sides[axis] {
-            Side::Periodic(_) => ahead[axis],
+            BoxSide::Periodic(_) => ahead[axis],
             _ => ahead[axis].clamp(domain.origin[axis], domain.origin[axis] + domain.length(axis)),
         }))
     }
@@ -268,7 +269,7 @@ impl Fast {
         registers: R,
         until: f64,
         most: u64,
-    ) -> Result<Option<Occurred>, EngineError> {
+    ) -> Result<Option<ExecutedEvent>, EngineError> {
         let most = most.saturating_mul(self.discs.len() as u64);
         loop {
             let Some((time, first)) = self.queue.first(registers, &self.numbers) else { return Ok(None) };
@@ -282,7 +283,7 @@ impl Fast {
                 return Err(EngineError::BackInTime(self.numbers[first as usize], time, self.time));
             }
             // Discs whose motion or list has changed; a single disc is listed twice.
-            let Expected { with, events } = self.partners[first as usize];
+            let ExpectedEvent { with, events } = self.partners[first as usize];
             let (changed, happened) = match with {
                 RENEWAL => {
                     if self.renewals >= most {
@@ -297,7 +298,7 @@ impl Fast {
                     let number = self.numbers[first as usize];
                     let disc = &mut self.discs[first as usize];
                     let axis = (wall - WALL[0]) as u8;
-                    ([first; 2], Some(Occurred::at_wall(&self.arena, (number, disc), axis, time)))
+                    ([first; 2], Some(ExecutedEvent::at_wall(&self.arena, (number, disc), axis, time)))
                 }
                 other => {
                     let (low, high) = (first.min(other), first.max(other));
@@ -306,7 +307,7 @@ impl Fast {
                     let met = if other < first { &a } else { &b };
                     if met.events as u32 == events {
                         let [p, q] = [low, high].map(|disc| self.numbers[disc as usize]);
-                        let happened = Occurred::collision(&self.arena, (p, a), (q, b), time);
+                        let happened = ExecutedEvent::collision(&self.arena, (p, a), (q, b), time);
                         ([first, other], Some(happened))
                     } else {
                         // The partner has changed its motion since the prediction.
@@ -331,20 +332,21 @@ impl Fast {
     }
 }
 
-impl Engine for Fast {
+impl EventEngine for Fast {
     fn count(&self) -> usize {
         self.discs.len()
     }
 
-    fn disc(&self, number: u32) -> &Disc {
+    fn disc(&self, number: u32) -> &FlyingDisc {
         &self.discs[self.places[number as usize] as usize]
     }
 
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError> {
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError> {
         let set = self.set;
         let mut found = Ok(None);
         let missing = |_| EngineError::NoInstructions(set);
-        dispatch_native(set, Next { engine: self, until, most, found: &mut found }).map_err(missing)?;
+        dispatch_native(set, NextEventTask { engine: self, until, most, found: &mut found })
+            .map_err(missing)?;
         found
     }
 
@@ -360,7 +362,7 @@ impl Engine for Fast {
         self.kept()
     }
 
-    fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
+    fn restore(&mut self, discs: Vec<FlyingDisc>, kept: &Snapshot) -> Result<(), String> {
         self.take_up(discs, kept)
     }
 
@@ -381,14 +383,14 @@ pub(crate) fn displacement_limit(arena: &Arena, radii: impl Iterator<Item = f64>
 }
 
 /// Task of the next event, compiled for an instruction set.
-struct Next<'e> {
+struct NextEventTask<'e> {
     engine: &'e mut Fast,
     until: f64,
     most: u64,
-    found: &'e mut Result<Option<Occurred>, EngineError>,
+    found: &'e mut Result<Option<ExecutedEvent>, EngineError>,
 }
 
-impl Task<f64> for Next<'_> {
+impl RegisterTask<f64> for NextEventTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, registers: R) {
         *self.found = self.engine.next_on(registers, self.until, self.most);
@@ -396,12 +398,12 @@ impl Task<f64> for Next<'_> {
 }
 
 /// Task that predicts the next event of every disc from a time on.
-struct All<'e> {
+struct PredictAllTask<'e> {
     engine: &'e mut Fast,
     time: f64,
 }
 
-impl Task<f64> for All<'_> {
+impl RegisterTask<f64> for PredictAllTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, registers: R) {
         for disc in 0..self.engine.discs.len() as u32 {

@@ -16,10 +16,10 @@ const MOST_WANTED: usize = 256;
 /// Times of a group.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Group([f64; GROUP]);
+struct TimeGroup([f64; GROUP]);
 
-impl Group {
-    const NONE: Group = Group([f64::INFINITY; GROUP]);
+impl TimeGroup {
+    const NONE: TimeGroup = TimeGroup([f64::INFINITY; GROUP]);
 
     /// Bit mask of the members below a bound.
     #[inline(always)]
@@ -55,7 +55,7 @@ impl Group {
 
 /// Sorted event.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct QueuedEvent {
     /// Time of the event.
     time: f64,
     /// Number of the disc, and its index in memory.
@@ -63,22 +63,22 @@ struct Entry {
     place: u32,
 }
 
-impl Entry {
+impl QueuedEvent {
     /// No event; sorts last.
-    const NONE: Entry = Entry { time: f64::INFINITY, number: u32::MAX, place: 0 };
+    const NONE: QueuedEvent = QueuedEvent { time: f64::INFINITY, number: u32::MAX, place: 0 };
 
     #[inline(always)]
-    fn is_before(&self, other: &Entry) -> bool {
+    fn is_before(&self, other: &QueuedEvent) -> bool {
         self.time < other.time || self.time == other.time && self.number < other.number
     }
 }
 
 #[derive(Clone, Debug)]
-pub(crate) struct Queue {
+pub(crate) struct EventQueue {
     /// Times, and above them, level by level, lower bounds of each group, which exclude the sorted events.
-    levels: Vec<AlignedColumn<Group>>,
+    levels: Vec<AlignedColumn<TimeGroup>>,
     /// Sorted next events, and how many are over. An entry is stale if its disc has another time now.
-    next: Vec<Entry>,
+    next: Vec<QueuedEvent>,
     over: usize,
     /// All events before this time are sorted.
     end: f64,
@@ -91,18 +91,19 @@ pub(crate) struct Queue {
     times: Vec<f64>,
 }
 
-impl Queue {
+impl EventQueue {
     /// Creates the queue of `count` discs without events.
-    pub(super) fn new(count: usize) -> Queue {
-        let groups =
-            |members: usize, level| AlignedColumn::filled(level, Group::NONE, members.div_ceil(GROUP).max(1));
+    pub(super) fn new(count: usize) -> EventQueue {
+        let groups = |members: usize, level| {
+            AlignedColumn::filled(level, TimeGroup::NONE, members.div_ceil(GROUP).max(1))
+        };
         let mut levels = vec![groups(count, 3)];
         while let Some(last) = levels.last().filter(|last| last.len() > 1) {
             let above = groups(last.len(), 3 + levels.len());
             levels.push(above);
         }
         let wanted = ((count as f64).sqrt() as usize).clamp(8, MOST_WANTED);
-        Queue {
+        EventQueue {
             visited: vec![vec![]; levels.len()],
             levels,
             next: vec![],
@@ -129,7 +130,7 @@ impl Queue {
     pub(super) fn set(&mut self, place: usize, number: u32, time: f64) {
         self.levels[0][place / GROUP].0[place % GROUP] = time;
         if time < self.end {
-            return self.insert(Entry { time, number, place: place as u32 });
+            return self.insert(QueuedEvent { time, number, place: place as u32 });
         }
         let mut place = place;
         for level in &mut self.levels[1..] {
@@ -144,7 +145,7 @@ impl Queue {
 
     #[cold]
     #[inline(never)]
-    fn insert(&mut self, entry: Entry) {
+    fn insert(&mut self, entry: QueuedEvent) {
         let at = self.over + self.next[self.over..].partition_point(|other| other.is_before(&entry));
         self.next.insert(at, entry);
     }
@@ -157,7 +158,7 @@ impl Queue {
         numbers: &[u32],
     ) -> Option<(f64, u32)> {
         loop {
-            while let Some(&Entry { time, place, .. }) = self.next.get(self.over) {
+            while let Some(&QueuedEvent { time, place, .. }) = self.next.get(self.over) {
                 if self.times()[place as usize] == time {
                     return Some((time, place));
                 }
@@ -205,7 +206,7 @@ impl Queue {
     /// up.
     #[inline(always)]
     fn find<R: Registers<Lane = f64>>(&mut self, registers: R) {
-        let Queue { levels, visited, found, end, .. } = self;
+        let EventQueue { levels, visited, found, end, .. } = self;
         let top = levels.len() - 1;
         visited[top].clear();
         visited[top].push(0);
@@ -244,7 +245,7 @@ impl Queue {
         times.extend(self.found.iter().map(|&place| self.times()[place as usize]));
         times.resize(self.found.len().next_multiple_of(R::LANES), f64::INFINITY);
         self.next.clear();
-        self.next.resize(self.found.len(), Entry::NONE);
+        self.next.resize(self.found.len(), QueuedEvent::NONE);
         let mut are_pairs = true;
         for (&time, &place) in times.iter().zip(&self.found) {
             let own = registers.splat(time);
@@ -260,7 +261,7 @@ impl Queue {
                 are_pairs = false;
                 before += 1;
             }
-            self.next[before] = Entry { time, number: numbers[place as usize], place };
+            self.next[before] = QueuedEvent { time, number: numbers[place as usize], place };
         }
         self.times = times;
         if are_pairs {
@@ -288,17 +289,17 @@ mod tests {
     use super::*;
     use rand::RngExt;
     use stripmine_kernels::backend::Scalar;
-    use stripmine_kernels::noise::{Purpose, Stream};
+    use stripmine_kernels::noise::{RandomPurpose, Stream};
 
     /// Compared with a linear search, with occasional equal times, as events occur and times change.
     #[test]
     fn queue_keeps_order_under_changes() {
-        let mut stream = Stream::new(7, Purpose::Test, 0);
+        let mut stream = Stream::new(7, RandomPurpose::Test, 0);
         for count in [1usize, 2, 16, 17, 300, 5000] {
             let mut times = vec![f64::INFINITY; count];
             // Numbers are the indices in reverse order.
             let numbers: Vec<u32> = (0..count as u32).rev().collect();
-            let mut queue = Queue::new(count);
+            let mut queue = EventQueue::new(count);
             let mut now = 0.0;
             for _ in 0..3000 {
                 for _ in 0..stream.random_range(1..4) {

@@ -1,6 +1,6 @@
 //! Choice of the mask with the fewest predictions per collision, by ISO99's cost formula.
 
-use super::grid::Sizes;
+use super::grid::ExclusiveGridSize;
 use crate::domain::Domain;
 use crate::method::hard_disks::keys::MASKS;
 use stripmine_kernels::mask::Mask;
@@ -15,7 +15,7 @@ pub fn mask(name: &str) -> Option<Mask> {
 
 /// Mask that may be chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Candidate {
+pub(crate) struct MaskCandidate {
     pub name: &'static str,
     /// Estimated predictions of pairs per collision; infinite if the mask is unsuitable.
     pub(crate) predictions: f64,
@@ -23,8 +23,8 @@ pub(crate) struct Candidate {
 
 /// Estimates the cost of each mask: predictions around the two discs of a collision, and a share of the predictions after a refill.
 /// The grid is refilled after a flight of the slack at twice the largest speed. ISO99 section 4.
-pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<Candidate> {
-    let sizes = Sizes::new(domain, radii[0]);
+pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<MaskCandidate> {
+    let sizes = ExclusiveGridSize::new(domain, radii[0]);
     let occupancy = count as f64 / (sizes.cells[0] * sizes.cells[1]) as f64;
     let names = MASKS.iter().filter(|name| mask(name).is_some());
     let of = |name: &&'static str| {
@@ -36,7 +36,7 @@ pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<
         let around = places * (occupancy + EMPTY);
         let between = collisions_while_flying(domain, radii, count, 0.5 * slack / FASTEST);
         let predictions = 2.0 * around * PER_DISC + count as f64 * around * 0.5 / between.max(1e-300);
-        Some(Candidate { name, predictions: if serves { predictions } else { f64::INFINITY } })
+        Some(MaskCandidate { name, predictions: if serves { predictions } else { f64::INFINITY } })
     };
     names.filter_map(of).collect()
 }

@@ -2,7 +2,7 @@
 //!
 //! All cells of a closed box are stored. Without a ceiling (`half_space`) only the occupied cells are.
 
-use crate::domain::{Domain, Side};
+use crate::domain::{BoxSide, Domain};
 use stripmine_kernels::mask::Mask;
 
 /// Marks an empty cell.
@@ -10,28 +10,28 @@ pub(crate) const EMPTY: u32 = u32::MAX;
 
 /// Number and size of the cells of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sizes {
+pub(crate) struct ExclusiveGridSize {
     /// Cells along x and y.
     pub cells: [usize; 2],
     /// Sides of a cell (length).
     pub edge: [f64; 2],
 }
 
-impl Sizes {
+impl ExclusiveGridSize {
     /// Fewest cells of which none can hold two centres of discs with at least this radius. ISO99 (2)–(5), with σ a radius.
     ///
     /// # As printed
     /// The symbols for the number of cells and for their size are swapped in (2)–(5).
-    pub(crate) fn new(domain: &Domain, smallest_radius: f64) -> Sizes {
+    pub(crate) fn new(domain: &Domain, smallest_radius: f64) -> ExclusiveGridSize {
         let bound = std::f64::consts::SQRT_2 * smallest_radius;
         // An infinite side saturates.
         let cells = [0, 1].map(|axis| ((domain.length(axis) / bound) as usize).saturating_add(1));
         let edge = [0, 1].map(|axis| match domain.sides[axis] {
             // An open side need not be divided evenly: just below the bound.
-            Side::Open => bound * (1.0 - 1e-9),
+            BoxSide::Open => bound * (1.0 - 1e-9),
             _ => domain.length(axis) / cells[axis] as f64,
         });
-        Sizes { cells, edge }
+        ExclusiveGridSize { cells, edge }
     }
 
     /// Column or row of the cell at a distance from the lower end (length).
@@ -52,12 +52,12 @@ impl Sizes {
 }
 
 /// Assignment of discs to cells at the last fill.
-pub(crate) trait Cells: Send {
+pub(crate) trait DiscCells: Send {
     /// Assigns every disc to the cell of its position inside the box (length).
     ///
     /// # Errors
     /// [`Misfit`] if two discs share a cell or one is too high.
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit>;
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit>;
 
     /// Position of a disc at the last fill (length).
     fn place(&self, disc: u32) -> [f64; 2];
@@ -71,7 +71,7 @@ pub(crate) trait Cells: Send {
 
 /// Reason why discs cannot be assigned to cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Misfit {
+pub(crate) enum CellMisfit {
     /// Two discs share a cell.
     Shared([u32; 2]),
     /// A disc is so high that the look-up needs more entries than are allowed.
@@ -80,9 +80,9 @@ pub(crate) enum Misfit {
 
 /// Grid that stores every cell of a box.
 #[derive(Clone, Debug)]
-pub(crate) struct Grid {
+pub(crate) struct ExclusiveGrid {
     domain: Domain,
-    sizes: Sizes,
+    sizes: ExclusiveGridSize,
     /// Width of the margin, in cells, that mirrors cells across periodic sides.
     margin: usize,
     width: usize,
@@ -96,13 +96,13 @@ pub(crate) struct Grid {
     offsets: Vec<isize>,
 }
 
-impl Grid {
+impl ExclusiveGrid {
     /// Creates the empty grid of a box, for a mask.
-    pub(crate) fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> Grid {
+    pub(crate) fn new(domain: Domain, sizes: ExclusiveGridSize, mask: &Mask) -> ExclusiveGrid {
         let margin = mask.half_width() as usize;
         let [width, height] = sizes.cells.map(|cells| cells + 2 * margin);
         let offset = |columns: i32, rows: i32| columns as isize + rows as isize * width as isize;
-        Grid {
+        ExclusiveGrid {
             domain,
             sizes,
             margin,
@@ -117,7 +117,7 @@ impl Grid {
     /// Copies cells across periodic sides into the margins.
     fn mirror(&mut self) {
         let ([columns, rows], margin, width) = (self.sizes.cells, self.margin, self.width);
-        let is_periodic = |axis: usize| matches!(self.domain.sides[axis], Side::Periodic(_));
+        let is_periodic = |axis: usize| matches!(self.domain.sides[axis], BoxSide::Periodic(_));
         if is_periodic(0) {
             for row in self.discs.chunks_exact_mut(width) {
                 row.copy_within(columns..columns + margin, 0);
@@ -131,8 +131,8 @@ impl Grid {
     }
 }
 
-impl Cells for Grid {
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit> {
+impl DiscCells for ExclusiveGrid {
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit> {
         self.discs.fill(EMPTY);
         self.cell.clear();
         for (number, at) in places.iter().enumerate() {
@@ -140,7 +140,7 @@ impl Cells for Grid {
                 [0, 1].map(|axis| self.sizes.along(axis, at[axis] - self.domain.origin[axis]) + self.margin);
             let cell = row * self.width + column;
             if self.discs[cell] != EMPTY {
-                return Err(Misfit::Shared([self.discs[cell], number as u32]));
+                return Err(CellMisfit::Shared([self.discs[cell], number as u32]));
             }
             self.discs[cell] = number as u32;
             self.cell.push(cell as u32);
@@ -173,19 +173,19 @@ impl Cells for Grid {
 mod tests {
     use super::*;
     use rand::RngExt;
-    use stripmine_kernels::noise::{Purpose, Stream};
+    use stripmine_kernels::noise::{RandomPurpose, Stream};
 
     /// Random discs: the mask contains every disc within its reach, also across periodic sides.
     #[test]
     fn masks_cover_everything_within_reach() {
-        let mut stream = Stream::new(11, Purpose::Test, 0);
+        let mut stream = Stream::new(11, RandomPurpose::Test, 0);
         for (periodic, mask) in [
             ([true, true], Mask::square(2)),
             ([true, false], Mask::round(3)),
             ([false, false], Mask::round(5)),
         ] {
             let domain = Domain::planar([-1.0, 2.0], [14.0, 11.3], periodic);
-            let sizes = Sizes::new(&domain, 0.5);
+            let sizes = ExclusiveGridSize::new(&domain, 0.5);
             assert!(sizes.bears(&domain, &mask) && sizes.edge.iter().all(|edge| *edge < 0.5 * 2f64.sqrt()));
             let mut discs: Vec<[f64; 2]> = vec![];
             while discs.len() < 60 {
@@ -195,7 +195,7 @@ mod tests {
                     discs.push(at);
                 }
             }
-            let mut grid = Grid::new(domain, sizes, &mask);
+            let mut grid = ExclusiveGrid::new(domain, sizes, &mask);
             grid.fill(discs.clone()).unwrap();
             for (number, here) in discs.iter().enumerate() {
                 let seen: Vec<u32> = grid.around(number as u32).collect();
@@ -210,8 +210,8 @@ mod tests {
     #[test]
     fn shared_cells_are_reported() {
         let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
-        let mut grid = Grid::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2));
+        let mut grid = ExclusiveGrid::new(domain, ExclusiveGridSize::new(&domain, 0.5), &Mask::square(2));
         let places = vec![[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]];
-        assert_eq!(grid.fill(places), Err(Misfit::Shared([0, 2])));
+        assert_eq!(grid.fill(places), Err(CellMisfit::Shared([0, 2])));
     }
 }

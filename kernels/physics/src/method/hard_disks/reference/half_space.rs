@@ -12,7 +12,7 @@
 //! N_G and k count from 1. k_max = INT(N_Gmax/L) is one short unless L divides N_Gmax; and "k_max < N" is wrong: C and D grow with the
 //! height of the highest disc.
 
-use super::grid::{Cells, EMPTY, Misfit, Sizes};
+use super::grid::{CellMisfit, DiscCells, EMPTY, ExclusiveGridSize};
 use crate::domain::Domain;
 use stripmine_kernels::mask::Mask;
 
@@ -23,9 +23,9 @@ const MOST: usize = 1 << 28;
 
 /// Grid that stores only the occupied cells.
 #[derive(Clone, Debug)]
-pub(crate) struct HalfSpace {
+pub(crate) struct HalfSpaceGrid {
     domain: Domain,
-    sizes: Sizes,
+    sizes: ExclusiveGridSize,
     /// Offsets from a cell to the cells of its mask: columns and rows.
     offsets: Vec<[isize; 2]>,
     /// A, BX, BY: disc, column and row.
@@ -37,11 +37,19 @@ pub(crate) struct HalfSpace {
     places: Vec<[f64; 2]>,
 }
 
-impl HalfSpace {
+impl HalfSpaceGrid {
     /// Creates the empty grid above a floor, for a mask.
-    pub(super) fn new(domain: Domain, sizes: Sizes, mask: &Mask) -> HalfSpace {
+    pub(super) fn new(domain: Domain, sizes: ExclusiveGridSize, mask: &Mask) -> HalfSpaceGrid {
         let offsets = mask.offsets().iter().map(|it| [it.columns as isize, it.rows as isize]).collect();
-        HalfSpace { domain, sizes, offsets, occupied: vec![], starts: vec![], cell: vec![], places: vec![] }
+        HalfSpaceGrid {
+            domain,
+            sizes,
+            offsets,
+            occupied: vec![],
+            starts: vec![],
+            cell: vec![],
+            places: vec![],
+        }
     }
 
     /// Returns the disc in a cell; [`EMPTY`] if there is none.
@@ -54,8 +62,8 @@ impl HalfSpace {
     }
 }
 
-impl Cells for HalfSpace {
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), Misfit> {
+impl DiscCells for HalfSpaceGrid {
+    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit> {
         self.cell.clear();
         self.occupied.clear();
         for (number, at) in places.iter().enumerate() {
@@ -69,13 +77,13 @@ impl Cells for HalfSpace {
         self.occupied.sort_unstable_by_key(|&(disc, column, row)| (row, column, disc));
         let shares = |pair: &&[(u32, u32, u32)]| (pair[0].1, pair[0].2) == (pair[1].1, pair[1].2);
         if let Some(pair) = self.occupied.windows(2).find(shares) {
-            return Err(Misfit::Shared([pair[0].0, pair[1].0]));
+            return Err(CellMisfit::Shared([pair[0].0, pair[1].0]));
         }
         let columns = self.sizes.cells[0];
         let of = |&(_, column, row): &(u32, u32, u32)| (columns * row as usize + column as usize) / BLOCK;
         let blocks = self.occupied.last().map_or(0, |last| of(last) + 1);
         if blocks > MOST {
-            return Err(Misfit::TooHigh(self.occupied[self.occupied.len() - 1].0, blocks));
+            return Err(CellMisfit::TooHigh(self.occupied[self.occupied.len() - 1].0, blocks));
         }
         let mut starts = std::mem::take(&mut self.starts);
         starts.clear();
@@ -118,12 +126,12 @@ impl Cells for HalfSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::Side;
+    use crate::domain::BoxSide;
 
-    fn half_space(periodic: bool) -> HalfSpace {
-        let first = if periodic { Side::Periodic(10.0) } else { Side::Closed(10.0) };
-        let domain = Domain { origin: [0.0; 3], sides: [first, Side::Open, Side::Flat] };
-        HalfSpace::new(domain, Sizes::new(&domain, 0.5), &Mask::square(2))
+    fn half_space(periodic: bool) -> HalfSpaceGrid {
+        let first = if periodic { BoxSide::Periodic(10.0) } else { BoxSide::Closed(10.0) };
+        let domain = Domain { origin: [0.0; 3], sides: [first, BoxSide::Open, BoxSide::Flat] };
+        HalfSpaceGrid::new(domain, ExclusiveGridSize::new(&domain, 0.5), &Mask::square(2))
     }
 
     /// Calculated by hand: neighbours beside, above and across the side. One disc at a height of 10⁵ needs blocks for all rows below.
@@ -149,8 +157,11 @@ mod tests {
     #[test]
     fn shared_cells_and_high_discs_are_reported() {
         let mut cells = half_space(true);
-        let fill = |cells: &mut HalfSpace, places: &[[f64; 2]]| cells.fill(places.to_vec());
-        assert_eq!(fill(&mut cells, &[[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]]), Err(Misfit::Shared([0, 2])));
-        assert!(matches!(fill(&mut cells, &[[5.0, 1.0], [5.0, 1e12]]), Err(Misfit::TooHigh(1, _))));
+        let fill = |cells: &mut HalfSpaceGrid, places: &[[f64; 2]]| cells.fill(places.to_vec());
+        assert_eq!(
+            fill(&mut cells, &[[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]]),
+            Err(CellMisfit::Shared([0, 2]))
+        );
+        assert!(matches!(fill(&mut cells, &[[5.0, 1.0], [5.0, 1e12]]), Err(CellMisfit::TooHigh(1, _))));
     }
 }

@@ -6,45 +6,45 @@ pub(crate) mod grid;
 mod half_space;
 mod tournament;
 
-use super::engine::{Engine, EngineError, Occurred, Partner};
+use super::engine::{EngineError, EventEngine, EventPartner, ExecutedEvent};
 use super::event::Arena;
 use super::operations::Operations;
-use crate::domain::Side;
-use crate::io::checkpoint::Column;
+use crate::domain::BoxSide;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
-use grid::{Cells, Grid, Misfit, Sizes};
-use half_space::HalfSpace;
-use stripmine_kernels::flight::{Disc, Space, meeting};
+use grid::{CellMisfit, DiscCells, ExclusiveGrid, ExclusiveGridSize};
+use half_space::HalfSpaceGrid;
+use stripmine_kernels::flight::{FlyingDisc, Space, meeting};
 use stripmine_kernels::mask::Mask;
-use tournament::Tournament;
+use tournament::TournamentTree;
 
 /// Predicted next event of a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Event {
+struct PredictedEvent {
     /// Time of the event; infinite if none.
     time: f64,
-    with: Partner,
+    with: EventPartner,
 }
 
-impl Event {
+impl PredictedEvent {
     /// No event.
-    const NONE: Event = Event { time: f64::INFINITY, with: Partner::Wall(0) };
+    const NONE: PredictedEvent = PredictedEvent { time: f64::INFINITY, with: EventPartner::Wall(0) };
 
     /// True if it precedes another event of the same disc; of two at one time, the one with the smaller partner comes first.
     #[inline(always)]
-    fn is_before(&self, other: &Event) -> bool {
+    fn is_before(&self, other: &PredictedEvent) -> bool {
         self.time < other.time || self.time == other.time && self.with < other.with
     }
 }
 
 /// Engine over cells of type `C`.
 #[derive(Clone, Debug)]
-pub(crate) struct Reference<C> {
+pub(crate) struct ReferenceEngine<C> {
     arena: Arena,
-    discs: Vec<Disc>,
+    discs: Vec<FlyingDisc>,
     grid: C,
-    events: Vec<Event>,
-    tree: Tournament,
+    events: Vec<PredictedEvent>,
+    tree: TournamentTree,
     /// Time of the last event, or the time up to which there is none.
     time: f64,
     /// Distance by which two discs may approach before the masks miss a pair (length), at the time `since`.
@@ -79,36 +79,42 @@ const ROUNDED_UP: f64 = 1.0 + 1e-9;
 /// [`EngineError`] if discs cannot be assigned to cells.
 pub(crate) fn begin(
     arena: Arena,
-    discs: Vec<Disc>,
+    discs: Vec<FlyingDisc>,
     mask: &Mask,
     time: f64,
-) -> Result<Box<dyn Engine>, EngineError> {
+) -> Result<Box<dyn EventEngine>, EngineError> {
     let smallest = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
-    let sizes = Sizes::new(&arena.domain, smallest);
+    let sizes = ExclusiveGridSize::new(&arena.domain, smallest);
     let reach = sizes.reach(mask);
     Ok(match arena.domain.sides[1] {
-        Side::Open => {
-            let cells = HalfSpace::new(arena.domain, sizes, mask);
-            Box::new(Reference::new(arena, discs, cells, reach, time)?)
+        BoxSide::Open => {
+            let cells = HalfSpaceGrid::new(arena.domain, sizes, mask);
+            Box::new(ReferenceEngine::new(arena, discs, cells, reach, time)?)
         }
-        _ => Box::new(Reference::new(arena, discs, Grid::new(arena.domain, sizes, mask), reach, time)?),
+        _ => Box::new(ReferenceEngine::new(
+            arena,
+            discs,
+            ExclusiveGrid::new(arena.domain, sizes, mask),
+            reach,
+            time,
+        )?),
     })
 }
 
-impl<C: Cells> Reference<C> {
+impl<C: DiscCells> ReferenceEngine<C> {
     /// Starts at a time; the cells contain every other disc within `reach` (length) of a disc.
     fn new(
         arena: Arena,
-        discs: Vec<Disc>,
+        discs: Vec<FlyingDisc>,
         grid: C,
         reach: f64,
         time: f64,
-    ) -> Result<Reference<C>, EngineError> {
+    ) -> Result<ReferenceEngine<C>, EngineError> {
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-        let mut engine = Reference {
+        let mut engine = ReferenceEngine {
             grid,
-            events: vec![Event::NONE; discs.len()],
-            tree: Tournament::new(discs.len(), |_| f64::INFINITY),
+            events: vec![PredictedEvent::NONE; discs.len()],
+            tree: TournamentTree::new(discs.len(), |_| f64::INFINITY),
             arena,
             discs,
             time,
@@ -131,21 +137,21 @@ impl<C: Cells> Reference<C> {
         self.since + self.slack / (2.0 * self.fastest)
     }
 
-    fn happen(&mut self, first: u32, event: Event) -> Occurred {
-        let Event { time, with } = event;
+    fn happen(&mut self, first: u32, event: PredictedEvent) -> ExecutedEvent {
+        let PredictedEvent { time, with } = event;
         match with {
-            Partner::Wall(axis) => {
+            EventPartner::Wall(axis) => {
                 let disc = &mut self.discs[first as usize];
-                let happened = Occurred::at_wall(&self.arena, (first, disc), axis, time);
+                let happened = ExecutedEvent::at_wall(&self.arena, (first, disc), axis, time);
                 self.heed(first);
                 self.repair([first, first]);
                 happened
             }
-            Partner::Disc(other) => {
+            EventPartner::Disc(other) => {
                 let [a, b] = [first.min(other), first.max(other)];
                 let (left, right) = self.discs.split_at_mut(b as usize);
                 let pair = ((a, &mut left[a as usize]), (b, &mut right[0]));
-                let happened = Occurred::collision(&self.arena, pair.0, pair.1, time);
+                let happened = ExecutedEvent::collision(&self.arena, pair.0, pair.1, time);
                 self.heed(a);
                 self.heed(b);
                 self.repair([a, b]);
@@ -165,7 +171,7 @@ impl<C: Cells> Reference<C> {
     }
 
     /// Speed in the frame that falls freely since the last fill (length/time).
-    fn speed(&self, disc: &Disc) -> f64 {
+    fn speed(&self, disc: &FlyingDisc) -> f64 {
         let [u, v] = disc.velocity_at(&self.arena.space, self.filled);
         (u * u + v * v).sqrt()
     }
@@ -178,11 +184,11 @@ impl<C: Cells> Reference<C> {
         for &disc in if a == b { &changed[..1] } else { &changed[..] } {
             let mut own = self.at_wall(disc);
             self.operations.searches += 1;
-            let Reference { grid, discs, events, tree, arena, operations, .. } = self;
+            let ReferenceEngine { grid, discs, events, tree, arena, operations, .. } = self;
             for other in grid.around(disc) {
                 operations.predictions += 1;
                 let time = pair(&arena.space, discs, [disc, other], now, horizon);
-                let theirs = Event { time, with: Partner::Disc(other) };
+                let theirs = PredictedEvent { time, with: EventPartner::Disc(other) };
                 if theirs.is_before(&own) {
                     own = theirs;
                 }
@@ -190,8 +196,8 @@ impl<C: Cells> Reference<C> {
                     continue;
                 }
                 let known = events[other as usize];
-                let ours = Event { time, with: Partner::Disc(disc) };
-                if known.with == Partner::Disc(disc) {
+                let ours = PredictedEvent { time, with: EventPartner::Disc(disc) };
+                if known.with == EventPartner::Disc(disc) {
                     lost.push(other);
                 } else if ours.is_before(&known) {
                     events[other as usize] = ours;
@@ -211,24 +217,24 @@ impl<C: Cells> Reference<C> {
     }
 
     /// Replaces the next event of a disc.
-    fn renew(&mut self, disc: u32, event: Event) {
-        let Reference { events, tree, .. } = self;
+    fn renew(&mut self, disc: u32, event: PredictedEvent) {
+        let ReferenceEngine { events, tree, .. } = self;
         events[disc as usize] = event;
         tree.update(disc, events.len(), |disc| events[disc as usize].time);
         self.operations.queue_moves += 1;
     }
 
-    fn at_wall(&self, disc: u32) -> Event {
+    fn at_wall(&self, disc: u32) -> PredictedEvent {
         let (time, axis) = self.arena.wall(&self.discs[disc as usize]);
-        Event { time, with: Partner::Wall(axis as u8) }
+        PredictedEvent { time, with: EventPartner::Wall(axis as u8) }
     }
 
     /// Predicts the next event of a disc among all discs in its mask.
-    fn predicted(&self, disc: u32) -> Event {
+    fn predicted(&self, disc: u32) -> PredictedEvent {
         let horizon = self.horizon();
         self.grid.around(disc).fold(self.at_wall(disc), |next, other| {
             let time = pair(&self.arena.space, &self.discs, [disc, other], self.time, horizon);
-            let event = Event { time, with: Partner::Disc(other) };
+            let event = PredictedEvent { time, with: EventPartner::Disc(other) };
             if event.is_before(&next) { event } else { next }
         })
     }
@@ -236,8 +242,8 @@ impl<C: Cells> Reference<C> {
     /// Assigns the discs to the cells of their positions (length).
     fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), EngineError> {
         self.grid.fill(places).map_err(|why| match why {
-            Misfit::Shared(pair) => EngineError::SharedCell(pair),
-            Misfit::TooHigh(disc, blocks) => EngineError::TooHigh(disc, blocks),
+            CellMisfit::Shared(pair) => EngineError::SharedCell(pair),
+            CellMisfit::TooHigh(disc, blocks) => EngineError::TooHigh(disc, blocks),
         })
     }
 
@@ -261,7 +267,7 @@ impl<C: Cells> Reference<C> {
             self.events[disc as usize] = self.at_wall(disc);
         }
         let (now, horizon, ahead) = (time, self.horizon(), self.slack / (2.0 * self.fastest));
-        let Reference { grid, discs, events, arena, speeds, operations, .. } = self;
+        let ReferenceEngine { grid, discs, events, arena, speeds, operations, .. } = self;
         // Visit each pair once, and only if it can meet before the horizon.
         for disc in 0..discs.len() as u32 {
             let (own, speed, here) = (&discs[disc as usize], speeds[disc as usize], grid.place(disc));
@@ -275,7 +281,7 @@ impl<C: Cells> Reference<C> {
                 operations.predictions += 1;
                 let time = pair(&arena.space, discs, [disc, other], now, horizon);
                 for (one, with) in [(disc, other), (other, disc)] {
-                    let event = Event { time, with: Partner::Disc(with) };
+                    let event = PredictedEvent { time, with: EventPartner::Disc(with) };
                     if event.is_before(&events[one as usize]) {
                         events[one as usize] = event;
                     }
@@ -288,16 +294,16 @@ impl<C: Cells> Reference<C> {
     }
 }
 
-impl<C: Cells> Engine for Reference<C> {
+impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
     fn count(&self) -> usize {
         self.discs.len()
     }
 
-    fn disc(&self, number: u32) -> &Disc {
+    fn disc(&self, number: u32) -> &FlyingDisc {
         &self.discs[number as usize]
     }
 
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<Occurred>, EngineError> {
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError> {
         loop {
             let first = self.tree.first();
             let event = self.events[first as usize];
@@ -331,9 +337,9 @@ impl<C: Cells> Engine for Reference<C> {
         let mut kept = Snapshot::default();
         for (axis, name) in FILLED_AT.into_iter().enumerate() {
             let along = (0..self.discs.len() as u32).map(|disc| self.grid.place(disc)[axis]);
-            kept.add_column(name, Column::F64(along.collect()));
+            kept.add_column(name, CheckpointColumn::F64(along.collect()));
         }
-        let Reference { time, slack, since, fastest, filled, remaps, .. } = *self;
+        let ReferenceEngine { time, slack, since, fastest, filled, remaps, .. } = *self;
         for (name, value) in SUMS.into_iter().zip([time, slack, since, fastest, filled]) {
             kept.add_sum(name, value);
         }
@@ -341,7 +347,7 @@ impl<C: Cells> Engine for Reference<C> {
         kept
     }
 
-    fn restore(&mut self, discs: Vec<Disc>, kept: &Snapshot) -> Result<(), String> {
+    fn restore(&mut self, discs: Vec<FlyingDisc>, kept: &Snapshot) -> Result<(), String> {
         let count = discs.len();
         let filled_at = [kept.numbers(FILLED_AT[0], count)?, kept.numbers(FILLED_AT[1], count)?];
         let places = (0..count).map(|disc| filled_at.map(|along| along[disc]));
@@ -363,7 +369,7 @@ impl<C: Cells> Engine for Reference<C> {
 
 /// Collision time of two discs, given by their numbers.
 #[inline(always)]
-fn pair(space: &Space, discs: &[Disc], [disc, other]: [u32; 2], now: f64, horizon: f64) -> f64 {
+fn pair(space: &Space, discs: &[FlyingDisc], [disc, other]: [u32; 2], now: f64, horizon: f64) -> f64 {
     let [a, b] = [disc.min(other), disc.max(other)];
     meeting(space, &discs[a as usize], &discs[b as usize], now, horizon)
 }

@@ -2,7 +2,7 @@
 
 /// Tournament tree. Leaves are discs, by number.
 #[derive(Clone, Debug)]
-pub(crate) struct Tournament {
+pub(crate) struct TournamentTree {
     /// Winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves are not stored.
     winners: Vec<u32>,
     /// Number of leaves, a power of two.
@@ -12,11 +12,11 @@ pub(crate) struct Tournament {
 /// Marks a leaf without a disc.
 const NONE: u32 = u32::MAX;
 
-impl Tournament {
+impl TournamentTree {
     /// Builds the tree of `count` discs with the keys `time`; ties go to the smaller number.
-    pub(super) fn new(count: usize, time: impl Fn(u32) -> f64) -> Tournament {
+    pub(super) fn new(count: usize, time: impl Fn(u32) -> f64) -> TournamentTree {
         let leaves = count.next_power_of_two().max(2);
-        let mut tree = Tournament { winners: vec![NONE; leaves], leaves };
+        let mut tree = TournamentTree { winners: vec![NONE; leaves], leaves };
         for node in (1..leaves).rev() {
             tree.winners[node] = tree.play(node, count, &time);
         }
@@ -75,14 +75,14 @@ impl Tournament {
 mod tests {
     use super::*;
     use rand::RngExt;
-    use stripmine_kernels::noise::{Purpose, Stream};
+    use stripmine_kernels::noise::{RandomPurpose, Stream};
 
     #[test]
     fn tournament_root_holds_the_smallest_key() {
-        let mut stream = Stream::new(7, Purpose::Test, 0);
+        let mut stream = Stream::new(7, RandomPurpose::Test, 0);
         for count in [1usize, 2, 3, 17, 64, 100] {
             let mut keys: Vec<f64> = (0..count).map(|_| stream.random_range(0..8) as f64).collect();
-            let mut tree = Tournament::new(count, |disc| keys[disc as usize]);
+            let mut tree = TournamentTree::new(count, |disc| keys[disc as usize]);
             for _ in 0..500 {
                 let smallest = (0..count).min_by(|&a, &b| keys[a].total_cmp(&keys[b])).unwrap();
                 assert_eq!(tree.first() as usize, smallest, "{keys:?}");

@@ -2,19 +2,19 @@
 
 use crate::domain::Domain;
 use crate::grid::sectors_of;
-use crate::method::lattice_md::document::Document;
+use crate::method::lattice_md::document::GranularDocument;
 use crate::method::lattice_md::keys::{CELL_EDGE, MASK, SEARCH, SKIN};
 use crate::method::lattice_md::model::sides_of;
-use crate::method::lattice_md::scene::By;
+use crate::method::lattice_md::scene::SearchKind;
 use crate::method::pairwise::search::OnConflict;
 use crate::number::significant;
 use crate::scene::{
-    COUNT, FILE, Key, Precision, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, Reason, SIDES, SceneError, Spot,
-    Start, WALL_RADIUS,
+    COUNT, DiscStart, FILE, Key, MistakeKind, Precision, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SIDES,
+    SceneError, Spot, WALL_RADIUS,
 };
 use crate::start::readable;
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
 /// The lattice of a scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Geometry {
     /// Columns, rows, halo.
     pub shape: LatticeShape,
     /// Lower left corner and sides of a cell (length).
-    pub frame: Frame,
+    pub frame: LatticeFrame,
     /// The neighbourhood.
     pub mask: Mask,
     /// Smallest and largest radius, walls included (length).
@@ -49,7 +49,7 @@ const WIDEST: f64 = 8.0;
 
 /// Bounds of a cell's size.
 #[derive(Clone, Copy)]
-struct Bounds {
+struct CellBounds {
     half_width: u32,
     /// 2 R_max/h: shorter sides let contacts escape the mask.
     least: f64,
@@ -57,10 +57,10 @@ struct Bounds {
     diagonal: f64,
 }
 
-impl Bounds {
+impl CellBounds {
     fn new(half_width: u32, radii: [f64; 2], max_penetration: f64) -> Self {
         let [smallest, largest] = radii;
-        Bounds {
+        CellBounds {
             half_width,
             least: 2.0 * largest / f64::from(half_width),
             diagonal: (1.0 - max_penetration) * 2.0 * smallest,
@@ -79,13 +79,13 @@ impl Bounds {
 
 /// Number and length of the cells along an axis.
 #[derive(Clone, Copy)]
-struct Cut {
+struct AxisCells {
     count: f64,
     edge: f64,
 }
 
 /// Cuts of an axis near the wanted edge that satisfy the bounds.
-fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
+fn cuts(side: f64, periodic: bool, bounds: &CellBounds, wanted: f64) -> Vec<AxisCells> {
     let fewest = (side / (bounds.longest() * SLACK)).ceil().max(1.0);
     let (fewest, most) = if periodic {
         let needed = f64::from(2 * bounds.half_width + 1);
@@ -100,7 +100,7 @@ fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
         .map(|count| {
             // Along an open side cells may extend beyond the box.
             let edge = if periodic { side / count } else { (side / count).max(bounds.least) };
-            Cut { count, edge }
+            AxisCells { count, edge }
         })
         .collect()
 }
@@ -110,26 +110,26 @@ fn cuts(side: f64, periodic: bool, bounds: &Bounds, wanted: f64) -> Vec<Cut> {
 /// # Errors
 /// Lists every reason why there is no such lattice.
 pub(super) fn fit(
-    document: &Document,
+    document: &GranularDocument,
     domain: &Domain,
     radii: [f64; 2],
     discs: usize,
 ) -> Result<Geometry, Vec<SceneError>> {
     let scene = &document.scene;
     let bounds = |half_width| {
-        let exclusive = Bounds::new(half_width, radii, scene.law.max_penetration);
+        let exclusive = CellBounds::new(half_width, radii, scene.law.max_penetration);
         // If discs may share a cell, any cell will do.
         let shared = scene.search.on_conflict == OnConflict::Resolve && scene.search.cell_edge.is_some();
         let exclusively = scene.needs_lattice() && !shared;
         let diagonal = if exclusively { exclusive.diagonal } else { f64::INFINITY };
-        Bounds { diagonal, ..exclusive }
+        CellBounds { diagonal, ..exclusive }
     };
-    let tries: Vec<Bounds> = match scene.search.mask {
+    let tries: Vec<CellBounds> = match scene.search.mask {
         Some(7) => vec![bounds(3)],
         Some(_) => vec![bounds(2)],
         None => vec![bounds(2), bounds(3)],
     };
-    let roomy: Vec<Bounds> =
+    let roomy: Vec<CellBounds> =
         tries.iter().copied().filter(|bounds| bounds.least <= bounds.most() * SLACK).collect();
     if roomy.is_empty() {
         return Err(vec![ratio_error(document, radii)]);
@@ -159,22 +159,22 @@ const LEAST_SKIN: f64 = 0.3;
 
 /// Returns the skin of lists and the sides of the cells that positions are measured in (length), for the scene's box and the box that steps use.
 fn search(
-    document: &Document,
+    document: &GranularDocument,
     [domain, seen]: [&Domain; 2],
     largest: f64,
     discs: usize,
     lattice_cell: [f64; 2],
 ) -> Result<(f64, [f64; 2]), SceneError> {
     let (asked, machine) = (&document.scene.search, &document.scene.machine);
-    let by_fast_lists = asked.by == By::NeighborList && machine.is_fast();
+    let by_fast_lists = asked.by == SearchKind::NeighborList && machine.is_fast();
     let skin = match asked.skin {
-        Some(skin) if asked.by == By::NeighborList => skin,
+        Some(skin) if asked.by == SearchKind::NeighborList => skin,
         _ if by_fast_lists => roomy_skin(domain, largest, discs),
         _ => LEAST_SKIN * largest,
     };
     let (reach, key) = match asked.by {
-        By::NeighborList if by_fast_lists => (2.0 * largest + skin, &SKIN),
-        By::Sectors => (2.0 * largest, &SEARCH),
+        SearchKind::NeighborList if by_fast_lists => (2.0 * largest + skin, &SKIN),
+        SearchKind::Sectors => (2.0 * largest, &SEARCH),
         _ => return Ok((skin, lattice_cell)),
     };
     let single = machine.precision != Precision::F64;
@@ -183,7 +183,7 @@ fn search(
         Err(cause) => {
             let spot =
                 if document.values.gives(key) { document.values.spot(key) } else { box_spot(document) };
-            let error = spot.error(Reason::Geometry, cause.to_string());
+            let error = spot.error(MistakeKind::Geometry, cause.to_string());
             Err(error.advising("make the box larger, lower search.skin, or set search.by = \"lattice\""))
         }
     }
@@ -203,10 +203,10 @@ fn roomy_skin(domain: &Domain, largest: f64, discs: usize) -> f64 {
 }
 
 fn lattice(
-    document: &Document,
+    document: &GranularDocument,
     domain: &Domain,
-    bounds: &Bounds,
-) -> Result<(LatticeShape, Frame, Mask), Vec<SceneError>> {
+    bounds: &CellBounds,
+) -> Result<(LatticeShape, LatticeFrame, Mask), Vec<SceneError>> {
     let asked = document.scene.search.cell_edge;
     let wanted = asked.unwrap_or(bounds.most());
     let widest = WIDEST * f64::from(bounds.half_width) * bounds.least;
@@ -215,7 +215,7 @@ fn lattice(
             "`search.cell_edge` = {edge} is too large: contacts are searched in single precision from the centres of the \
              cells and would be missed in cells wider than {WIDEST} of the largest diameter"
         );
-        let error = document.values.spot(&CELL_EDGE).error(Reason::Geometry, message);
+        let error = document.values.spot(&CELL_EDGE).error(MistakeKind::Geometry, message);
         return Err(vec![error.expecting(format!("an edge of at most {} (length)", readable(widest)))]);
     }
     if wanted * SLACK < bounds.least || wanted > bounds.most() * SLACK {
@@ -235,7 +235,8 @@ fn lattice(
                 format!("but centres may come as close as {}", readable(bounds.diagonal)),
             )
         };
-        let error = document.values.spot(&CELL_EDGE).error(Reason::Geometry, format!("{message}, {why}"));
+        let error =
+            document.values.spot(&CELL_EDGE).error(MistakeKind::Geometry, format!("{message}, {why}"));
         let range =
             format!("an edge from {} to {} (length)", readable(bounds.least), readable(bounds.most()));
         return Err(vec![error.expecting(range)]);
@@ -250,7 +251,7 @@ fn lattice(
             significant(domain.length(axis), 6),
             significant(bounds.most(), 6)
         );
-        let error = box_spot(document).error(Reason::Geometry, message);
+        let error = box_spot(document).error(MistakeKind::Geometry, message);
         return Err(vec![error.advising("make the box smaller, or the discs larger")]);
     }
     let axes = [0, 1].map(|axis| cuts(domain.length(axis), domain.is_periodic(axis), bounds, wanted));
@@ -262,7 +263,7 @@ fn lattice(
         return Err(short);
     }
     // Prefer the fewest cells, or those nearest to the wanted edge; then the squarest.
-    let cost = |x: &Cut, y: &Cut| match asked {
+    let cost = |x: &AxisCells, y: &AxisCells| match asked {
         None => (x.count * y.count, (x.edge - y.edge).abs()),
         Some(_) => ((x.edge - wanted).abs() + (y.edge - wanted).abs(), x.count * y.count),
     };
@@ -280,24 +281,24 @@ fn lattice(
             readable(bounds.least),
             readable(bounds.diagonal)
         );
-        let error = box_spot(document).error(Reason::Geometry, message);
+        let error = box_spot(document).error(MistakeKind::Geometry, message);
         return Err(vec![error.advising("make the box a little larger, or lower law.max_penetration")]);
     };
     let mask = Mask::square(bounds.half_width);
     let shape = LatticeShape::new(x.count as usize, y.count as usize, &mask, domain.periodic())
-        .map_err(|cause| vec![box_spot(document).error(Reason::Geometry, cause.to_string())])?;
-    Ok((shape, Frame { origin: domain.corner(), edge: [x.edge, y.edge] }, mask))
+        .map_err(|cause| vec![box_spot(document).error(MistakeKind::Geometry, cause.to_string())])?;
+    Ok((shape, LatticeFrame { origin: domain.corner(), edge: [x.edge, y.edge] }, mask))
 }
 
 /// Location of the key that decides the size of the box.
-fn box_spot(document: &Document) -> Spot {
+fn box_spot(document: &GranularDocument) -> Spot {
     match document.scene.start {
-        Start::Hexagonal { .. } => document.values.spot(&COUNT),
+        DiscStart::Hexagonal { .. } => document.values.spot(&COUNT),
         _ => document.values.spot(&SIDES),
     }
 }
 
-fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds) -> SceneError {
+fn short_side(document: &GranularDocument, domain: &Domain, axis: usize, bounds: &CellBounds) -> SceneError {
     let (side, name) = (domain.length(axis), ["x", "y"][axis]);
     let needed = 2 * bounds.half_width + 1;
     let fit = (side / bounds.least * SLACK).floor();
@@ -308,20 +309,22 @@ fn short_side(document: &Document, domain: &Domain, axis: usize, bounds: &Bounds
             readable(bounds.least)
         );
         let least = readable(f64::from(needed) * bounds.least);
-        box_spot(document).error(Reason::Geometry, message).expecting(format!("a side of at least {least}"))
+        box_spot(document)
+            .error(MistakeKind::Geometry, message)
+            .expecting(format!("a side of at least {least}"))
     } else {
         let message = format!(
             "no whole number of cells fills the side along {name}, {side} long: a cell must be {} to {} long",
             readable(bounds.least),
             readable(bounds.longest())
         );
-        box_spot(document).error(Reason::Geometry, message)
+        box_spot(document).error(MistakeKind::Geometry, message)
     };
     error.advising("make the box larger, or the discs smaller")
 }
 
 /// Error of radii that differ too much for every mask, or for the requested one.
-fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
+fn ratio_error(document: &GranularDocument, radii: [f64; 2]) -> SceneError {
     let scene = &document.scene;
     let [smallest, largest] = radii.map(readable);
     let penetration = scene.law.max_penetration;
@@ -332,13 +335,13 @@ fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
     let said = format!("the largest radius, {largest}, is {ratio:.4} times the smallest, {smallest}");
     let error = match scene.search.mask {
         Some(7) | None => ratio_spot(document).error(
-            Reason::Geometry,
+            MistakeKind::Geometry,
             format!(
                 "{said}; at law.max_penetration = {penetration} a 7×7 mask allows {seven:.4}, 5×5 {five:.4}"
             ),
         ),
         Some(_) => document.values.spot(&MASK).error(
-            Reason::Geometry,
+            MistakeKind::Geometry,
             format!("{said}; at law.max_penetration = {penetration} a 5×5 mask allows {five:.4}"),
         ),
     };
@@ -354,14 +357,14 @@ fn ratio_error(document: &Document, radii: [f64; 2]) -> SceneError {
     error.expecting(format!("a ratio of at most {seven:.4}")).advising(help)
 }
 
-fn ratio_spot(document: &Document) -> Spot {
+fn ratio_spot(document: &GranularDocument) -> Spot {
     let keys: &[&Key] = match &document.scene.start {
-        Start::File(_) => &[&FILE],
-        Start::List(list) if list.wall_positions.is_empty() => &[&RADII, &RADIUS],
-        Start::Random { .. } | Start::Compressed { .. } | Start::Hexagonal { .. } => {
+        DiscStart::File(_) => &[&FILE],
+        DiscStart::List(list) if list.wall_positions.is_empty() => &[&RADII, &RADIUS],
+        DiscStart::Random { .. } | DiscStart::Compressed { .. } | DiscStart::Hexagonal { .. } => {
             &[&RADIUS_CUT, &RADIUS_SPREAD, &RADIUS]
         }
-        Start::Pipe { grains, .. } | Start::Box { grains, .. } if grains.cut > 0.2 => {
+        DiscStart::Pipe { grains, .. } | DiscStart::Box { grains, .. } if grains.cut > 0.2 => {
             &[&RADIUS_CUT, &WALL_RADIUS, &RADIUS]
         }
         _ => &[&WALL_RADIUS, &RADII, &RADIUS_CUT, &RADIUS],

@@ -4,27 +4,27 @@ mod geometry;
 mod motion;
 
 pub use geometry::Geometry;
-pub use motion::Estimates;
-use motion::Refusal;
+pub use motion::MotionEstimates;
+use motion::StepRejection;
 pub(super) use motion::{FASTEST, FEWEST_STEPS, LEAST_STEPS, MUCH_LOST, NETWORK, rounding};
 
-use super::choice::{self, Choice};
-use super::document::Document;
+use super::choice::{self, SearchChoice};
+use super::document::GranularDocument;
 use super::keys::{SEARCH, VOCABULARY};
-use super::scene::{By, Scene};
+use super::scene::{GranularScene, SearchKind};
 use crate::domain::Domain;
 use crate::method::compress;
 use crate::method::entry::left_out;
-use crate::particles::{Kind, Particle, Particles};
-use crate::scene::{RADIUS, Reason, SceneError, SceneErrors, Values, Warning};
-use crate::start::{self, Made, Stated};
+use crate::particles::{Particle, ParticleKind, Particles};
+use crate::scene::{MistakeKind, RADIUS, SceneError, SceneErrors, SceneValues, Warning};
+use crate::start::{self, InitialState, StatedStart};
 use crate::words::Words;
 
 /// Checked scene: its discs, its lattice, and reported properties.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checked {
+pub struct CheckedGranularScene {
     /// The scene.
-    pub scene: Scene,
+    pub scene: GranularScene,
     /// The box.
     pub domain: Domain,
     /// The discs at the start, inside the box.
@@ -34,7 +34,7 @@ pub struct Checked {
     /// The lattice.
     pub geometry: Geometry,
     /// Estimates of the motion.
-    pub estimates: Estimates,
+    pub estimates: MotionEstimates,
     /// Choices that the scene left open, with reasons.
     pub choices: Vec<String>,
     /// Parts that the scene does not need, with reasons.
@@ -43,61 +43,65 @@ pub struct Checked {
     pub warnings: Vec<Warning>,
 }
 
-impl Document {
+impl GranularDocument {
     /// Generates the discs and checks the scene against the method's preconditions.
     ///
     /// # Errors
     /// [`SceneErrors`]: every violated precondition.
-    pub fn check(self) -> Result<Checked, SceneErrors> {
-        check(self, Steps::Foreseen)
+    pub fn check(self) -> Result<CheckedGranularScene, SceneErrors> {
+        check(self, AcceptedSteps::Foreseen)
     }
 
     /// Checks the scene at any step: reasons to reject the step become warnings, so that predictions of theory can be tested.
     ///
     /// # Errors
     /// [`SceneErrors`]: every violated precondition.
-    pub(super) fn check_at_any_step(self) -> Result<Checked, SceneErrors> {
-        check(self, Steps::Any)
+    pub(super) fn check_at_any_step(self) -> Result<CheckedGranularScene, SceneErrors> {
+        check(self, AcceptedSteps::Any)
     }
 }
 
-impl Checked {
+impl CheckedGranularScene {
     /// Returns the same scene with the lattice search, whatever search its runs use; none where its discs fit no lattice.
-    pub(super) fn on_lattice(&self) -> Option<Checked> {
+    pub(super) fn on_lattice(&self) -> Option<CheckedGranularScene> {
         let mut scene = self.scene.clone();
-        scene.search.by = By::Lattice;
-        let document = Document { scene, values: Values::of_no_text(&VOCABULARY) };
+        scene.search.by = SearchKind::Lattice;
+        let document = GranularDocument { scene, values: SceneValues::of_no_text(&VOCABULARY) };
         let geometry =
             geometry::fit(&document, &self.domain, self.geometry.radii, self.particles.len()).ok()?;
-        Some(Checked { scene: document.scene, geometry, ..self.clone() })
+        Some(CheckedGranularScene { scene: document.scene, geometry, ..self.clone() })
     }
 }
 
 /// Accepted steps.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Steps {
+enum AcceptedSteps {
     /// Steps that theory predicts to be stable.
     Foreseen,
     /// All steps.
     Any,
 }
 
-impl Scene {
+impl GranularScene {
     /// Generates the discs and checks the scene against the method's preconditions.
     ///
     /// # Errors
     /// [`SceneErrors`]: every violated precondition.
-    pub fn check(&self) -> Result<Checked, SceneErrors> {
-        check(Document { scene: self.clone(), values: Values::of_no_text(&VOCABULARY) }, Steps::Foreseen)
+    pub fn check(&self) -> Result<CheckedGranularScene, SceneErrors> {
+        check(
+            GranularDocument { scene: self.clone(), values: SceneValues::of_no_text(&VOCABULARY) },
+            AcceptedSteps::Foreseen,
+        )
     }
 }
 
 /// Generates the discs of a scene and checks it against every precondition.
-fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
+fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<CheckedGranularScene, SceneErrors> {
     let mut errors = Vec::new();
     let mut choices: Vec<String> = choice::engine(&mut document.scene).into_iter().collect();
-    let Document { scene, values } = &document;
-    let stated = Stated { values, domain: &scene.domain, start: &scene.start, walls: scene.walls, compress };
+    let GranularDocument { scene, values } = &document;
+    let stated =
+        StatedStart { values, domain: &scene.domain, start: &scene.start, walls: scene.walls, compress };
     let made = match start::make(&stated) {
         Ok(made) => Some(made),
         Err(error) => {
@@ -105,7 +109,7 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
             None
         }
     };
-    if let Some(Made { domain, particles, .. }) = &made {
+    if let Some(InitialState { domain, particles, .. }) = &made {
         errors.extend(start::outside(&stated, domain, particles));
         let limit = document.scene.law.max_penetration;
         let reason = format!("the limit is law.max_penetration = {limit}");
@@ -125,44 +129,55 @@ fn check(mut document: Document, steps: Steps) -> Result<Checked, SceneErrors> {
         }
         _ => None,
     };
-    let mut refusals: Vec<Refusal> = motion::instability(&document).into_iter().collect();
-    if let (Some(Made { domain, particles, .. }), Some(geometry)) = (&made, &geometry) {
+    let mut refusals: Vec<StepRejection> = motion::instability(&document).into_iter().collect();
+    if let (Some(InitialState { domain, particles, .. }), Some(geometry)) = (&made, &geometry) {
         errors.extend(numbered(&document, particles));
         refusals.extend(motion::long_steps(&document, domain, particles, geometry));
     }
     let mut tolerated: Vec<Warning> = vec![];
     match steps {
-        Steps::Foreseen => errors.extend(refusals.into_iter().map(|refusal| refusal.error)),
-        Steps::Any => tolerated.extend(refusals.into_iter().map(Warning::from)),
+        AcceptedSteps::Foreseen => errors.extend(refusals.into_iter().map(|refusal| refusal.error)),
+        AcceptedSteps::Any => tolerated.extend(refusals.into_iter().map(Warning::from)),
     }
     SceneErrors::none_of(errors)?;
-    let (Some(Made { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
+    let (Some(InitialState { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
         // A missing part has already reported an error above.
-        let error = document.values.spot(&RADIUS).error(Reason::Geometry, "there is nothing to simulate");
+        let error =
+            document.values.spot(&RADIUS).error(MistakeKind::Geometry, "there is nothing to simulate");
         return Err(error.into());
     };
     let scene = document.scene;
-    let estimates = Estimates::of(&scene, &particles);
+    let estimates = MotionEstimates::of(&scene, &particles);
     warnings.append(&mut tolerated);
     warnings.extend(motion::warnings(&scene, &domain, &particles, &geometry, &estimates));
     let alike = all_alike(&particles);
     let left_out = not_modelled(&scene, &particles, alike);
-    Ok(Checked { scene, domain, particles, alike, geometry, estimates, choices, left_out, warnings })
+    Ok(CheckedGranularScene {
+        scene,
+        domain,
+        particles,
+        alike,
+        geometry,
+        estimates,
+        choices,
+        left_out,
+        warnings,
+    })
 }
 
 /// Returns the geometry of a scene; with an open search, that of the fastest search that has one.
 fn fitted(
-    document: &mut Document,
+    document: &mut GranularDocument,
     domain: &Domain,
     radii: [f64; 2],
     particles: &Particles,
     choices: &mut Vec<String>,
 ) -> Result<Geometry, Vec<SceneError>> {
-    if document.scene.search.by != By::Auto {
+    if document.scene.search.by != SearchKind::Auto {
         return geometry::fit(document, domain, radii, particles.len());
     }
     let mut first: Option<Vec<SceneError>> = None;
-    for Choice { by, reason } in choice::searches(&document.scene, domain, particles) {
+    for SearchChoice { by, reason } in choice::searches(&document.scene, domain, particles) {
         document.scene.search.by = by;
         match geometry::fit(document, domain, radii, particles.len()) {
             Ok(geometry) => {
@@ -177,29 +192,30 @@ fn fitted(
 
 fn all_alike(particles: &Particles) -> bool {
     let Some(first) = particles.all().first() else { return false };
-    let same =
-        |disc: &Particle| disc.kind == Kind::Grain && disc.radius == first.radius && disc.mass == first.mass;
+    let same = |disc: &Particle| {
+        disc.kind == ParticleKind::Grain && disc.radius == first.radius && disc.mass == first.mass
+    };
     particles.all().iter().all(same)
 }
 
 /// Error of more discs than the partners in a fast method's lists have bits for.
-fn numbered(document: &Document, particles: &Particles) -> Option<SceneError> {
+fn numbered(document: &GranularDocument, particles: &Particles) -> Option<SceneError> {
     const MOST: usize = (1 << 29) - 3;
-    let Scene { search, machine, .. } = &document.scene;
-    let listed = machine.is_fast() && search.by != By::Lattice;
+    let GranularScene { search, machine, .. } = &document.scene;
+    let listed = machine.is_fast() && search.by != SearchKind::Lattice;
     (listed && particles.len() > MOST).then(|| {
         let message =
             format!("{} discs are too many: sectors and fast lists can number {MOST}", particles.len());
         document
             .values
             .spot(&SEARCH)
-            .error(Reason::Placement, message)
+            .error(MistakeKind::Placement, message)
             .advising("set search.by = \"lattice\", which can number more")
     })
 }
 
 /// Parts of the model that the scene does not need.
-fn not_modelled(scene: &Scene, particles: &Particles, alike: bool) -> Vec<String> {
+fn not_modelled(scene: &GranularScene, particles: &Particles, alike: bool) -> Vec<String> {
     let contact = &scene.law.contact;
     let rubs = contact.friction > 0.0;
     left_out(&[

@@ -2,16 +2,16 @@
 
 use super::Geometry;
 use crate::domain::Domain;
-use crate::method::lattice_md::document::Document;
+use crate::method::lattice_md::document::GranularDocument;
 use crate::method::lattice_md::keys::{FRICTION, SHEAR_DAMPING, STIFFNESS};
-use crate::method::lattice_md::model::{GearValues, OnLongStep, Scheme};
-use crate::method::lattice_md::scene::{Integrator, Scene};
+use crate::method::lattice_md::model::{GearValues, GranularScheme, OnLongStep};
+use crate::method::lattice_md::scene::{GranularScene, Integrator};
 use crate::method::lattice_md::theory::contact::HeadOn;
 use crate::method::lattice_md::theory::step_matrix::largest_step;
 use crate::number::significant;
 use crate::particles::{Particle, Particles, longest_step};
 use crate::scene::{
-    DT, GRAVITY, INSTRUCTION_SET, Key, PERIODIC, PRECISION, Precision, Reason, SceneError, WallMotion,
+    DT, GRAVITY, INSTRUCTION_SET, Key, MistakeKind, PERIODIC, PRECISION, Precision, SceneError, WallMotion,
     Warning,
 };
 use crate::start::noun;
@@ -20,7 +20,7 @@ use stripmine_kernels::sweep::lattice::Coordinates;
 
 /// Estimates of the motion from the start alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Estimates {
+pub struct MotionEstimates {
     /// Typical speed of approach (length/time): the largest of √2 times the root mean square speed, the speed of a fall through a radius, and the
     /// speed of the walls.
     pub(crate) approach_speed: f64,
@@ -42,14 +42,14 @@ pub struct Estimates {
 
 /// Largest γ dt for which a scheme is stable for pure drag: 0.545, 0.300 and 0.163 with Gear's 4, 5 and 6 values. Capped at 1, because longer steps
 /// reverse a velocity, though velocity Verlet is stable up to 2.
-fn damping_limit(scheme: Scheme) -> f64 {
+fn damping_limit(scheme: GranularScheme) -> f64 {
     largest_step(scheme, 0.0, 1.0).unwrap_or(1.0).min(1.0)
 }
 
-fn scheme_in_words(scheme: Scheme) -> String {
+fn scheme_in_words(scheme: GranularScheme) -> String {
     match scheme {
-        Scheme::Gear(values) => format!("Gear's scheme of {} values", values.count()),
-        Scheme::VelocityVerlet => "velocity Verlet".to_owned(),
+        GranularScheme::Gear(values) => format!("Gear's scheme of {} values", values.count()),
+        GranularScheme::VelocityVerlet => "velocity Verlet".to_owned(),
     }
 }
 
@@ -66,9 +66,9 @@ pub(in crate::method::lattice_md) const FEWEST_STEPS: f64 = 3.0;
 /// Speed of the fastest approach over the typical one.
 pub(in crate::method::lattice_md) const FASTEST: f64 = 3.0;
 
-impl Estimates {
+impl MotionEstimates {
     /// Estimates for a scene and its discs.
-    pub(in crate::method::lattice_md) fn of(scene: &Scene, particles: &Particles) -> Estimates {
+    pub(in crate::method::lattice_md) fn of(scene: &GranularScene, particles: &Particles) -> MotionEstimates {
         let grains = particles.grains();
         let number = grains.len().max(1) as f64;
         let square: f64 =
@@ -90,7 +90,7 @@ impl Estimates {
         let contact = HeadOn { law, speed, effective_mass: 0.5 * mass };
         let duration = (speed > 0.0).then(|| contact.duration());
         let damping = law.normal_damping * scene.integrator.dt;
-        Estimates {
+        MotionEstimates {
             approach_speed: speed,
             contact_duration: duration,
             steps_per_contact: duration.map(|duration| duration / scene.integrator.dt),
@@ -104,7 +104,7 @@ impl Estimates {
 }
 
 /// Reason to reject a scene's step.
-pub(super) struct Refusal {
+pub(super) struct StepRejection {
     check: &'static str,
     share: f64,
     key: &'static Key,
@@ -112,15 +112,15 @@ pub(super) struct Refusal {
     pub(super) error: SceneError,
 }
 
-impl From<Refusal> for Warning {
-    fn from(Refusal { check, share, key, error }: Refusal) -> Warning {
+impl From<StepRejection> for Warning {
+    fn from(StepRejection { check, share, key, error }: StepRejection) -> Warning {
         let suggestion = error.expected.unwrap_or_default();
         Warning { check, share, is_refusal: true, key: key.path(), message: error.message, suggestion }
     }
 }
 
 /// Rejects a damping at which even a single contact is unstable.
-pub(super) fn instability(document: &Document) -> Option<Refusal> {
+pub(super) fn instability(document: &GranularDocument) -> Option<StepRejection> {
     let scene = &document.scene;
     let Integrator { dt, scheme, .. } = scene.integrator;
     let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
@@ -131,30 +131,30 @@ pub(super) fn instability(document: &Document) -> Option<Refusal> {
              about {limit:.2}",
             significant(gamma * dt, 4)
         );
-        let error = document.values.spot(&DT).error(Reason::Stability, message);
+        let error = document.values.spot(&DT).error(MistakeKind::Stability, message);
         let error = error
             .expecting(format!("dt below {} (time), {} where packings are dense", significant(limit / gamma, 5), significant({
                 limit / (NETWORK * gamma)
             }, 5)))
             .advising(match scheme {
-                Scheme::Gear(GearValues::Four) | Scheme::VelocityVerlet => "lower dt or law.normal_damping",
+                GranularScheme::Gear(GearValues::Four) | GranularScheme::VelocityVerlet => "lower dt or law.normal_damping",
                 _ => "lower dt or law.normal_damping, or use fewer Gear values",
             });
-        Refusal { check: "damping of a contact", share: gamma * dt / limit, key: &DT, error }
+        StepRejection { check: "damping of a contact", share: gamma * dt / limit, key: &DT, error }
     })
 }
 
 /// Rejects steps too long for the discs at the start: discs would pass through each other undetected, collide in too few steps, or lose their motion
 /// to rounding.
 pub(super) fn long_steps(
-    document: &Document,
+    document: &GranularDocument,
     domain: &Domain,
     particles: &Particles,
     geometry: &Geometry,
-) -> Vec<Refusal> {
+) -> Vec<StepRejection> {
     let scene = &document.scene;
     let dt = scene.integrator.dt;
-    let estimates = Estimates::of(scene, particles);
+    let estimates = MotionEstimates::of(scene, particles);
     let mut refusals = Vec::new();
     let speed = |disc: &Particle| disc.velocity[0].hypot(disc.velocity[1]);
     let fastest = particles.all().iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
@@ -173,11 +173,11 @@ pub(super) fn long_steps(
             speed = significant(speed, 5),
             limit = significant(limit, 5)
         );
-        let error = document.values.spot(&DT).error(Reason::Stability, message);
+        let error = document.values.spot(&DT).error(MistakeKind::Stability, message);
         let error = error.expecting(format!("dt below {} (time)", significant(limit / speed, 5))).advising(
             "lower dt, slow the discs, or count such steps instead: integrator.on_long_step = \"count\"",
         );
-        refusals.push(Refusal { check: "mask", share: speed * dt / limit, key: &DT, error });
+        refusals.push(StepRejection { check: "mask", share: speed * dt / limit, key: &DT, error });
     }
     if let (Some(steps), Some(duration)) = (estimates.steps_per_contact, estimates.contact_duration)
         && steps < FEWEST_STEPS
@@ -188,13 +188,18 @@ pub(super) fn long_steps(
             significant(estimates.approach_speed, 5),
             duration = significant(duration, 5)
         );
-        let error = document.values.spot(&DT).error(Reason::Stability, message);
+        let error = document.values.spot(&DT).error(MistakeKind::Stability, message);
         let error = error.expecting(format!(
             "dt below {} (time), and below {} for {LEAST_STEPS} steps a contact",
             significant(duration / FEWEST_STEPS, 5),
             significant(duration / LEAST_STEPS, 5)
         ));
-        refusals.push(Refusal { check: "3 steps a contact", share: FEWEST_STEPS / steps, key: &DT, error });
+        refusals.push(StepRejection {
+            check: "3 steps a contact",
+            share: FEWEST_STEPS / steps,
+            key: &DT,
+            error,
+        });
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, &estimates)
         && rounding > MOST_LOST * step
@@ -207,7 +212,7 @@ pub(super) fn long_steps(
             rounding = significant(rounding, 2),
             step = significant(step, 2)
         );
-        let error = document.values.spot(&PRECISION).error(Reason::Geometry, message);
+        let error = document.values.spot(&PRECISION).error(MistakeKind::Geometry, message);
         let error = error
             .expecting(format!("steps longer than {} (length)", significant(rounding / MOST_LOST, 2)))
             .advising(match absolute {
@@ -217,7 +222,7 @@ pub(super) fn long_steps(
                 false => "set machine.precision = \"mixed\" or \"f64\"",
             });
         let share = rounding / (MOST_LOST * step);
-        refusals.push(Refusal { check: "lost motion", share, key: &PRECISION, error });
+        refusals.push(StepRejection { check: "lost motion", share, key: &PRECISION, error });
     }
     refusals
 }
@@ -230,16 +235,16 @@ const MOST_LOST: f64 = 1.0;
 pub(in crate::method::lattice_md) const MUCH_LOST: f64 = 0.3;
 
 /// True if the state's positions are measured from the origin.
-fn are_absolute(scene: &Scene) -> bool {
+fn are_absolute(scene: &GranularScene) -> bool {
     !scene.machine.is_fast() && scene.machine.coordinates == Coordinates::Absolute
 }
 
 /// Largest rounding of a position in a step, and typical step (length); none unless the state is in single precision and something moves.
 fn lost_motion(
-    scene: &Scene,
+    scene: &GranularScene,
     domain: &Domain,
     geometry: &Geometry,
-    estimates: &Estimates,
+    estimates: &MotionEstimates,
 ) -> Option<(f64, f64)> {
     let typical = estimates.approach_speed / std::f64::consts::SQRT_2 * scene.integrator.dt;
     (typical > 0.0).then_some((rounding(scene, domain, geometry)?, typical))
@@ -247,7 +252,7 @@ fn lost_motion(
 
 /// Largest rounding of a position (length), if the state is in single precision.
 pub(in crate::method::lattice_md) fn rounding(
-    scene: &Scene,
+    scene: &GranularScene,
     domain: &Domain,
     geometry: &Geometry,
 ) -> Option<f64> {
@@ -261,11 +266,11 @@ pub(in crate::method::lattice_md) fn rounding(
 
 /// Returns warnings about settings that seldom work.
 pub(super) fn warnings(
-    scene: &Scene,
+    scene: &GranularScene,
     domain: &Domain,
     particles: &Particles,
     geometry: &Geometry,
-    estimates: &Estimates,
+    estimates: &MotionEstimates,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |check: &'static str, share: f64, key: &Key, message: String, suggestion: String| {
@@ -342,10 +347,10 @@ pub(super) fn warnings(
 }
 
 fn depth_warnings(
-    scene: &Scene,
+    scene: &GranularScene,
     domain: &Domain,
     particles: &Particles,
-    estimates: &Estimates,
+    estimates: &MotionEstimates,
     warn: &mut impl FnMut(&'static str, f64, &Key, String, String),
 ) {
     let law = &scene.law.contact;
@@ -395,7 +400,7 @@ fn smallest_radius(particles: &Particles) -> f64 {
 }
 
 /// Weight of the highest possible column of grains: all of them, spread over the box across gravity.
-fn column(scene: &Scene, domain: &Domain, particles: &Particles) -> f64 {
+fn column(scene: &GranularScene, domain: &Domain, particles: &Particles) -> f64 {
     let diameter = 2.0 * smallest_radius(particles);
     let heaviest = particles.grains().iter().map(|disc| disc.mass).fold(0.0, f64::max);
     let total: f64 = particles.grains().iter().map(|disc| disc.mass).sum();

@@ -5,37 +5,39 @@ mod account;
 mod names;
 mod saved;
 
-use super::neighbor_list::Rival;
-use super::options::ProgramText;
+use super::neighbor_list::ScalarLists;
+use super::options::ProgramVersion;
 use super::programs::{programs_of, rival_ledger_of, scales};
 use super::walls::walls_at;
-use super::{Arrays, Contacts, Machine, Model, Part, StepProgram, execute, ledger};
-use crate::io::checkpoint::Column;
-use crate::method::pairwise::{
-    Crossings, Elapsed, Named, Phase, Prescribed, Stepping, Timings, unwrapped, wrapped,
+use super::{
+    ContactSearch, GranularModel, Part, ProgramArrays, ProgramExecution, StepProgram, execute, ledger,
 };
-use crate::method::{Failure, PerParticle};
+use crate::io::checkpoint::CheckpointColumn;
+use crate::method::pairwise::{
+    Crossings, Elapsed, NameableDiscs, Phase, PrescribedMotion, SteppingDiscs, Timings, unwrapped, wrapped,
+};
+use crate::method::{PerParticle, PhysicsFailure};
 use crate::particles::{Particle, Particles};
 use crate::scene::WallMotion;
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::NOT_FINITE;
 use stripmine_kernels::integrator::gear::STATE;
-use stripmine_kernels::isa::{Array, COUNTERS, Counter, ProgramError};
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::ledger::{Ledger, Length};
-use stripmine_kernels::sweep::fast::Met;
+use stripmine_kernels::isa::{Array, COUNTERS, LaneCounter, ProgramError};
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::ledger::{Ledger, VectorLength};
+use stripmine_kernels::sweep::fast::SweepReport;
 use stripmine_kernels::sweep::lattice::cells::{CONFLICTS, STRAYS};
 use stripmine_kernels::sweep::lattice::forces::DEEP;
 
 /// Discs with state of precision `S` and forces of precision `P`.
 pub(super) struct LatticeMd<S, P> {
-    model: Model,
-    machine: Machine,
+    model: GranularModel,
+    machine: ProgramExecution,
     programs: Vec<StepProgram>,
-    arrays: Arrays<S, P>,
+    arrays: ProgramArrays<S, P>,
     start: Particles,
     walls: WallMotion,
-    rival: Option<Rival<P>>,
+    rival: Option<ScalarLists<P>>,
     elapsed: Elapsed,
     /// Cells that positions are measured in while the Index is built; empty if they are those of the arrays.
     anchor: Vec<u32>,
@@ -44,25 +46,25 @@ pub(super) struct LatticeMd<S, P> {
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     /// Places `particles`. Their forces are unknown until [`compute_forces`](Stepping::compute_forces).
     pub(super) fn new(
-        model: Model,
-        contacts: Contacts,
-        machine: Machine,
+        model: GranularModel,
+        contacts: ContactSearch,
+        machine: ProgramExecution,
         walls: WallMotion,
         particles: Particles,
     ) -> Self {
         let rival = match contacts {
-            Contacts::Lattice | Contacts::Fast(_) => None,
-            Contacts::Lists(options) => {
+            ContactSearch::Lattice | ContactSearch::Fast(_) => None,
+            ContactSearch::Lists(options) => {
                 let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
-                Some(Rival::new(&model, options, largest))
+                Some(ScalarLists::new(&model, options, largest))
             }
         };
         let crossings = Crossings::new(model.counts_crossings(), particles.len());
         LatticeMd {
             programs: programs_of::<S, P>(&model),
             arrays: match contacts {
-                Contacts::Lists(_) => Arrays::with_forces_by_disc(&model, &particles),
-                Contacts::Lattice | Contacts::Fast(_) => Arrays::new(&model, &particles),
+                ContactSearch::Lists(_) => ProgramArrays::with_forces_by_disc(&model, &particles),
+                ContactSearch::Lattice | ContactSearch::Fast(_) => ProgramArrays::new(&model, &particles),
             },
             start: particles,
             elapsed: Elapsed::new(model.dt, crossings),
@@ -77,7 +79,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     /// Sets the second derivatives of the first forces: a start from zero would reduce the order.
     fn start_derivatives(&mut self) {
         let scale = scales(&self.model)[2];
-        let Model { gravity, inertia_factor, discs, .. } = self.model;
+        let GranularModel { gravity, inertia_factor, discs, .. } = self.model;
         for (freedom, force) in [Array::Fx, Array::Fy, Array::Torque].into_iter().enumerate() {
             let Some(column) = self.arrays.lattice(force) else { continue };
             let acceleration: Vec<f64> = self
@@ -88,10 +90,10 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
                 .map(|(number, grain)| {
                     let force = self.arrays.force_at(number).map_or(f64::NAN, |at| column[at].to_f64());
                     let inertia = match (discs, freedom) {
-                        (super::Discs::Equal { disc, .. }, 0 | 1) => 1.0 / disc.inverse_mass,
-                        (super::Discs::Equal { inverse_inertia, .. }, _) => 1.0 / inverse_inertia,
-                        (super::Discs::Varying, 0 | 1) => grain.mass,
-                        (super::Discs::Varying, _) => {
+                        (super::DiscUniformity::Equal { disc, .. }, 0 | 1) => 1.0 / disc.inverse_mass,
+                        (super::DiscUniformity::Equal { inverse_inertia, .. }, _) => 1.0 / inverse_inertia,
+                        (super::DiscUniformity::Varying, 0 | 1) => grain.mass,
+                        (super::DiscUniformity::Varying, _) => {
                             inertia_factor * grain.mass * grain.radius * grain.radius
                         }
                     };
@@ -110,7 +112,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             _ => self.arrays.memory(),
         };
         execute(&self.programs, parts, &memory, lengths, self.machine.execution, self.machine.set)?;
-        Ok([0, 1, 2, 3].map(|counter| memory.counted(Counter(counter))))
+        Ok([0, 1, 2, 3].map(|counter| memory.counted(LaneCounter(counter))))
     }
 
     fn move_walls(&mut self, time: f64) {
@@ -118,7 +120,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
         if grains == discs || self.walls == WallMotion::Fixed {
             return;
         }
-        let Prescribed { displacement, velocity } = walls_at(self.walls, time);
+        let PrescribedMotion { displacement, velocity } = walls_at(self.walls, time);
         let positions = self.start.all()[grains..].iter().map(|disc| disc.position);
         let mut positions: Vec<[f64; 2]> =
             positions.map(|at| [at[0] + displacement[0], at[1] + displacement[1]]).collect();
@@ -134,7 +136,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             if let Some(position) = self.arrays.state_mut([Array::X0, Array::Y0][axis]) {
                 position[grains..].iter_mut().zip(start).for_each(|(to, from)| *to = S::from_f64(from));
             }
-            if self.model.text == ProgramText::Printed
+            if self.model.text == ProgramVersion::Printed
                 && let Some(rate) = self.arrays.state_mut([Array::X1, Array::Y1][axis])
             {
                 rate[grains..].fill(S::from_f64(velocity[axis]));
@@ -161,8 +163,8 @@ impl<S: backend::Precision, P: backend::Precision> PerParticle for LatticeMd<S, 
     }
 }
 
-impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> {
-    fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S, P> {
+    fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
         self.elapsed.steps += 1;
         let mut timings = self.elapsed.timings;
         timings.time(Phase::Predict, || self.run(&[Part::Predictor]))?;
@@ -172,7 +174,7 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
     }
 
     // The programs are compiled for the quantities that the model needs.
-    fn compute_forces(&mut self, _asked: Asked) -> Result<Met, Failure> {
+    fn compute_forces(&mut self, _asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
         self.move_walls(self.elapsed.time());
         let mut timings = self.elapsed.timings;
         if self.elapsed.crossings.is_followed() || self.model.is_anchored::<S>() {
@@ -212,15 +214,19 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
                 let counted = timings.time(Phase::Forces, || self.run(&[Part::Forces]))?;
                 let found = watch.filter(|_| counted[DEEP.0 as usize] > 0);
                 let deep = found.map_or(vec![], |watch| self.marked_on_lattice(watch.depth()));
-                Met { deep, dissipated: self.power_on_lattice(), ..Met::default() }
+                SweepReport { deep, dissipated: self.power_on_lattice(), ..SweepReport::default() }
             }
             Some(mut rival) => {
                 timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
                 timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
                 let deep = std::mem::take(&mut rival.met.deep).into_iter();
                 let deep = deep.map(|(disc, partner)| [disc as u32, partner as u32]).collect();
-                let met =
-                    Met { pairs: rival.met.pairs, dissipated: rival.met.dissipated, deep, ..Met::default() };
+                let met = SweepReport {
+                    pairs: rival.met.pairs,
+                    dissipated: rival.met.dissipated,
+                    deep,
+                    ..SweepReport::default()
+                };
                 self.rival = Some(rival);
                 met
             }
@@ -229,7 +235,7 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
         Ok(met)
     }
 
-    fn finish(&mut self) -> Result<(), Failure> {
+    fn finish(&mut self) -> Result<(), PhysicsFailure> {
         if self.elapsed.steps == 0 {
             self.start_derivatives();
             self.elapsed.timings = Timings::default();
@@ -289,11 +295,11 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
         (0..self.start.len()).map(forces).collect()
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         self.saved()
     }
 
-    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+    fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         self.take_up(columns)?;
         self.elapsed.steps = steps;
         self.move_walls(self.elapsed.time());
@@ -307,11 +313,11 @@ impl<S: backend::Precision, P: backend::Precision> Stepping for LatticeMd<S, P> 
         }
     }
 
-    fn length(&self, length: Length) -> Option<u64> {
+    fn length(&self, length: VectorLength) -> Option<u64> {
         let rival = self.rival.as_ref()?;
         match length {
-            Length::Candidates => Some(rival.candidates() as u64),
-            Length::Pairs => Some(rival.met.pairs),
+            VectorLength::Candidates => Some(rival.candidates() as u64),
+            VectorLength::Pairs => Some(rival.met.pairs),
             _ => None,
         }
     }

@@ -2,14 +2,14 @@
 
 use super::LatticeMd;
 use crate::domain::Domain;
-use crate::method::lattice_md::options::ProgramText;
-use crate::method::pairwise::{Named, conflict, not_finite, outside};
-use crate::method::{Clock, Failure};
+use crate::method::lattice_md::options::ProgramVersion;
+use crate::method::pairwise::{NameableDiscs, conflict, not_finite, outside};
+use crate::method::{Clock, PhysicsFailure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 
-impl<S: Precision, P: Precision> Named for LatticeMd<S, P> {
+impl<S: Precision, P: Precision> NameableDiscs for LatticeMd<S, P> {
     fn clock(&self) -> Clock {
         self.elapsed.clock()
     }
@@ -44,9 +44,9 @@ impl<S: Precision, P: Precision> Named for LatticeMd<S, P> {
 
     fn velocity(&self, disc: usize) -> [f64; 2] {
         match self.model.text {
-            ProgramText::Ours => [Array::DiscVx, Array::DiscVy]
+            ProgramVersion::Ours => [Array::DiscVx, Array::DiscVy]
                 .map(|axis| self.arrays.lattice(axis).map_or(f64::NAN, |column| column[disc].to_f64())),
-            ProgramText::Printed => [Array::X1, Array::Y1]
+            ProgramVersion::Printed => [Array::X1, Array::Y1]
                 .map(|axis| self.arrays.state(axis).map_or(f64::NAN, |column| column[disc].to_f64())),
         }
     }
@@ -62,9 +62,9 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
     /// True if a disc belongs to no cell.
     fn is_stray(&self, disc: usize) -> bool {
         match self.model.text {
-            ProgramText::Ours => self.arrays.cell()[disc] == 0,
+            ProgramVersion::Ours => self.arrays.cell()[disc] == 0,
             // Cells are not computed where there is a stray.
-            ProgramText::Printed => {
+            ProgramVersion::Printed => {
                 let (at, domain) = (self.position(disc), self.model.domain());
                 let [low, sides] = [domain.corner(), domain.lengths()];
                 (0..2).any(|axis| !(low[axis]..=low[axis] + sides[axis]).contains(&at[axis]))
@@ -73,7 +73,7 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
     }
 
     /// Failure of discs that belong to no cell.
-    pub(super) fn stray(&self, count: u64) -> Option<Failure> {
+    pub(super) fn stray(&self, count: u64) -> Option<PhysicsFailure> {
         let strays = || (0..self.start.len()).filter(|&disc| self.is_stray(disc));
         let lost = |disc: &usize| self.position(*disc).iter().any(|r| !r.is_finite());
         // Positions that are not finite are reported before positions outside.
@@ -85,7 +85,7 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
     }
 
     /// Failure of discs whose cell is taken by another disc.
-    pub(super) fn conflicting(&self) -> Option<Failure> {
+    pub(super) fn conflicting(&self) -> Option<PhysicsFailure> {
         let cell = self.arrays.cell();
         let index = self.arrays.index();
         let taken = |disc: &usize| cell[*disc] != 0 && index[cell[*disc] as usize - 1] != *disc as u32 + 1;
@@ -95,7 +95,7 @@ impl<S: Precision, P: Precision> LatticeMd<S, P> {
     }
 
     /// Failure of discs whose correction is not finite.
-    pub(super) fn not_finite(&self, count: u64) -> Option<Failure> {
+    pub(super) fn not_finite(&self, count: u64) -> Option<PhysicsFailure> {
         let disc = (0..self.start.len()).find(|&disc| {
             let moved =
                 [Array::X2, Array::Y2, Array::Phi2].into_iter().filter_map(|array| self.arrays.state(array));

@@ -1,7 +1,7 @@
 //! The state of a simulation as columns, for checkpoints.
 
 use super::LatticeMd;
-use crate::io::checkpoint::Column;
+use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::real_column;
 use crate::method::restored::find_column;
 use stripmine_kernels::backend;
@@ -19,7 +19,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 
     /// Everything that the next step depends on, by name.
-    pub(super) fn saved(&self) -> Vec<(String, Column)> {
+    pub(super) fn saved(&self) -> Vec<(String, CheckpointColumn)> {
         let column = |values: &[S]| real_column(values.iter().copied());
         let arrays = self.arrays.states().map(|(array, values)| (array.label().to_owned(), column(values)));
         let cells = self.keeps_cells().then(|| {
@@ -27,20 +27,20 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             (Array::DiscCell.label().to_owned(), real_column(cells))
         });
         let crossings = self.elapsed.crossings.columns();
-        let mut columns: Vec<(String, Column)> = arrays.chain(cells).chain(crossings).collect();
+        let mut columns: Vec<(String, CheckpointColumn)> = arrays.chain(cells).chain(crossings).collect();
         if let Some(rival) = &self.rival {
             for (name, values) in MADE_AT.into_iter().zip(rival.made_at()) {
-                columns.push((name.to_owned(), Column::F64(values)));
+                columns.push((name.to_owned(), CheckpointColumn::F64(values)));
             }
             // Doubles are exact up to 2⁵³, far beyond any count.
             let counts = vec![rival.rebuilds as f64, rival.met.pairs as f64];
-            columns.push((LIST_COUNTS.to_owned(), Column::F64(counts)));
+            columns.push((LIST_COUNTS.to_owned(), CheckpointColumn::F64(counts)));
         }
         columns
     }
 
     /// Restores columns that [`saved`](Self::saved) returned.
-    pub(super) fn take_up(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
+    pub(super) fn take_up(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
         for array in expected {
             let to = self.arrays.state_mut(array).unwrap_or(&mut []);
@@ -63,7 +63,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 
     /// Restores the cells of discs; if the run so far did not need them, they follow from the positions.
-    fn take_up_cells(&mut self, columns: &[(String, Column)]) -> Result<(), String> {
+    fn take_up_cells(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         let label = Array::DiscCell.label();
         let is_kept = columns.iter().any(|(name, _)| name == label);
         if !is_kept && !self.model.is_anchored::<S>() && self.model.counts_crossings_for_motion_alone() {

@@ -32,7 +32,7 @@ impl HeadOn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::integrator::single::Single;
+    use stripmine_kernels::integrator::single::SingleFreedom;
     use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
     use stripmine_kernels::law::granular::ContactArm;
     use stripmine_kernels::law::spring::Spring;
@@ -59,7 +59,7 @@ mod tests {
                 -contact.law.elastic(|number| number, overlap.max(0.0)) / contact.effective_mass
             };
             let dt = contact.duration() / 1e5;
-            let mut single = Single::new(VelocityVerlet, dt).starting(0.0, contact.speed, force);
+            let mut single = SingleFreedom::new(VelocityVerlet, dt).starting(0.0, contact.speed, force);
             let (mut deepest, mut steps) = (0.0, 0);
             while single.motion()[0] >= 0.0 {
                 single.step(force);

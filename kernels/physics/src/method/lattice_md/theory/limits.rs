@@ -2,8 +2,8 @@
 
 use super::contact::HeadOn;
 use super::step_matrix::largest_step;
-use crate::method::lattice_md::check::{Checked, FASTEST, FEWEST_STEPS, LEAST_STEPS, NETWORK};
-use crate::method::{Beyond, StepLimit};
+use crate::method::lattice_md::check::{CheckedGranularScene, FASTEST, FEWEST_STEPS, LEAST_STEPS, NETWORK};
+use crate::method::{LimitConsequence, StepLimit};
 use crate::number::significant;
 use crate::particles::longest_step;
 
@@ -16,7 +16,7 @@ const DENSE: f64 = 0.5;
 const UNSTABLE_ALONE: f64 = 1.732_050_807_568_877_2;
 
 /// Returns all limits of a scene's step.
-pub(crate) fn step_limits(checked: &Checked) -> Vec<StepLimit> {
+pub(crate) fn step_limits(checked: &CheckedGranularScene) -> Vec<StepLimit> {
     let all = [
         one_contact(checked),
         packing(checked),
@@ -29,7 +29,7 @@ pub(crate) fn step_limits(checked: &Checked) -> Vec<StepLimit> {
 }
 
 /// Head-on contact of the lightest grains at a multiple of the typical speed of approach.
-pub(crate) fn contact(checked: &Checked, faster: f64) -> HeadOn {
+pub(crate) fn contact(checked: &CheckedGranularScene, faster: f64) -> HeadOn {
     let masses = checked.particles.grains().iter().map(|disc| disc.mass);
     HeadOn {
         law: checked.scene.law.contact,
@@ -38,7 +38,7 @@ pub(crate) fn contact(checked: &Checked, faster: f64) -> HeadOn {
     }
 }
 
-fn one_contact(checked: &Checked) -> Option<StepLimit> {
+fn one_contact(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let (scheme, damping) = (checked.scene.integrator.scheme, checked.scene.law.contact.normal_damping);
     let contact = contact(checked, FASTEST);
     let step = largest_step(scheme, contact.stiffest(), damping)?;
@@ -55,13 +55,13 @@ fn one_contact(checked: &Checked) -> Option<StepLimit> {
         step,
         share: checked.scene.integrator.dt / step,
         warned_beyond: UNSTABLE_ALONE,
-        beyond: Beyond::Unstable,
+        beyond: LimitConsequence::Unstable,
         why,
     })
 }
 
 /// Limit for discs pressed from all sides.
-fn packing(checked: &Checked) -> Option<StepLimit> {
+fn packing(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let (scheme, law) = (checked.scene.integrator.scheme, &checked.scene.law.contact);
     let discs = checked.particles.all().iter().map(|disc| std::f64::consts::PI * disc.radius.powi(2));
     let is_dense = discs.sum::<f64>() > DENSE * checked.domain.area();
@@ -80,13 +80,13 @@ fn packing(checked: &Checked) -> Option<StepLimit> {
         step,
         share: checked.scene.integrator.dt / step,
         warned_beyond: UNSTABLE_ALONE,
-        beyond: Beyond::Unstable,
+        beyond: LimitConsequence::Unstable,
         why,
     })
 }
 
 /// Limit for the drag that slows both surfaces of a pair: γ_S M_eff (1/m + 1/m + R²/I + R²/I).
-fn friction(checked: &Checked) -> Option<StepLimit> {
+fn friction(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let law = &checked.scene.law;
     let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
     let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
@@ -99,12 +99,17 @@ fn friction(checked: &Checked) -> Option<StepLimit> {
         step,
         share: checked.scene.integrator.dt / step,
         warned_beyond: UNSTABLE_ALONE,
-        beyond: Beyond::Unstable,
+        beyond: LimitConsequence::Unstable,
         why,
     })
 }
 
-fn of_duration(checked: &Checked, name: &'static str, steps: f64, warned_beyond: f64) -> Option<StepLimit> {
+fn of_duration(
+    checked: &CheckedGranularScene,
+    name: &'static str,
+    steps: f64,
+    warned_beyond: f64,
+) -> Option<StepLimit> {
     let contact = contact(checked, 1.0);
     let duration = contact.duration();
     let why = format!(
@@ -119,22 +124,22 @@ fn of_duration(checked: &Checked, name: &'static str, steps: f64, warned_beyond:
         step,
         share: checked.scene.integrator.dt / step,
         warned_beyond,
-        beyond: Beyond::Inaccurate,
+        beyond: LimitConsequence::Inaccurate,
         why,
     })
 }
 
-fn followed(checked: &Checked) -> Option<StepLimit> {
+fn followed(checked: &CheckedGranularScene) -> Option<StepLimit> {
     // With fewer steps single contacts err by percents, which averages over many contacts seldom show.
     of_duration(checked, "15 steps a contact", LEAST_STEPS, f64::INFINITY)
 }
 
-fn fewest(checked: &Checked) -> Option<StepLimit> {
+fn fewest(checked: &CheckedGranularScene) -> Option<StepLimit> {
     of_duration(checked, "3 steps a contact", FEWEST_STEPS, 1.0)
 }
 
 /// Limit for the fastest disc of the start, beyond which contacts are missed.
-fn mask(checked: &Checked) -> Option<StepLimit> {
+fn mask(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let speeds = checked.particles.all().iter().map(|disc| disc.velocity[0].hypot(disc.velocity[1]));
     let fastest = speeds.fold(0.0, f64::max).max(checked.estimates.approach_speed);
     let depth = checked.scene.law.max_penetration;
@@ -152,7 +157,7 @@ fn mask(checked: &Checked) -> Option<StepLimit> {
         step,
         share,
         warned_beyond: 1.0,
-        beyond: Beyond::Unseen,
+        beyond: LimitConsequence::Unseen,
         why,
     })
 }

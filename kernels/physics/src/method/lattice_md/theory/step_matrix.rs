@@ -1,13 +1,13 @@
 //! Step matrix of a scheme on a spring and damper, and the largest step at which its powers do not grow.
 
-use crate::method::lattice_md::model::{GearValues, Scheme};
+use crate::method::lattice_md::model::{GearValues, GranularScheme};
 use stripmine_kernels::integrator::gear::{Acceleration, Gear};
-use stripmine_kernels::integrator::single::Single;
+use stripmine_kernels::integrator::single::SingleFreedom;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 use stripmine_kernels::integrator::{self, DERIVATIVES};
 
 /// Step matrix, sized for the scheme with the most values.
-type Matrix = [[f64; DERIVATIVES]; DERIVATIVES];
+type StepMatrix = [[f64; DERIVATIVES]; DERIVATIVES];
 
 /// Gain of a disturbance during half a period of the spring above which errors count as growing.
 const GAIN: f64 = 0.1;
@@ -19,13 +19,19 @@ const ROUNDING: f64 = 1e-9;
 const BISECTIONS: u32 = 50;
 
 /// Returns the spectral radius of the step matrix of x″ = −ω² x − γ x′; `spring` is (ω dt)², `damper` γ dt.
-pub(crate) fn spectral_radius(scheme: Scheme, spring: f64, damper: f64) -> f64 {
+pub(crate) fn spectral_radius(scheme: GranularScheme, spring: f64, damper: f64) -> f64 {
     let kind = if damper == 0.0 { Acceleration::OfPositions } else { Acceleration::OfVelocities };
     match scheme {
-        Scheme::Gear(GearValues::Four) => radius_of(Gear::<4>::new(kind), scheme.values(), spring, damper),
-        Scheme::Gear(GearValues::Five) => radius_of(Gear::<5>::new(kind), scheme.values(), spring, damper),
-        Scheme::Gear(GearValues::Six) => radius_of(Gear::<6>::new(kind), scheme.values(), spring, damper),
-        Scheme::VelocityVerlet => radius_of(VelocityVerlet, scheme.values(), spring, damper),
+        GranularScheme::Gear(GearValues::Four) => {
+            radius_of(Gear::<4>::new(kind), scheme.values(), spring, damper)
+        }
+        GranularScheme::Gear(GearValues::Five) => {
+            radius_of(Gear::<5>::new(kind), scheme.values(), spring, damper)
+        }
+        GranularScheme::Gear(GearValues::Six) => {
+            radius_of(Gear::<6>::new(kind), scheme.values(), spring, damper)
+        }
+        GranularScheme::VelocityVerlet => radius_of(VelocityVerlet, scheme.values(), spring, damper),
     }
 }
 
@@ -34,7 +40,7 @@ fn radius_of<C: integrator::Scheme>(scheme: C, values: usize, spring: f64, dampe
     let mut matrix = [[0.0; DERIVATIVES]; DERIVATIVES];
     // Transposed, with the same eigenvalues.
     for (unit, image) in matrix.iter_mut().enumerate().take(values) {
-        let mut single = Single::new(scheme, 1.0);
+        let mut single = SingleFreedom::new(scheme, 1.0);
         single.row[unit] = 1.0;
         single.step(|position, velocity| -spring * position - damper * velocity);
         image[..values].copy_from_slice(&single.row[..values]);
@@ -43,7 +49,7 @@ fn radius_of<C: integrator::Scheme>(scheme: C, values: usize, spring: f64, dampe
 }
 
 /// Computed from the norm of a high power: ‖A^n‖^(1/n).
-fn largest_eigenvalue(mut matrix: Matrix) -> f64 {
+fn largest_eigenvalue(mut matrix: StepMatrix) -> f64 {
     let mut logarithm = 0.0;
     for squaring in 0..SQUARINGS {
         let norm = matrix.iter().flatten().fold(0.0, |norm: f64, entry| norm.max(entry.abs()));
@@ -60,7 +66,7 @@ fn largest_eigenvalue(mut matrix: Matrix) -> f64 {
     libm::exp(logarithm)
 }
 
-fn squared(matrix: &Matrix) -> Matrix {
+fn squared(matrix: &StepMatrix) -> StepMatrix {
     let product =
         |row: usize, column: usize| (0..DERIVATIVES).map(|k| matrix[row][k] * matrix[k][column]).sum();
     std::array::from_fn(|row| std::array::from_fn(|column| product(row, column)))
@@ -68,7 +74,7 @@ fn squared(matrix: &Matrix) -> Matrix {
 
 /// Returns the largest step (time) at which errors do not grow on a spring of frequency² `spring` (1/time²) and a damper of rate `damper` (1/time).
 /// Growth means more than a tenth within half a period of the spring, or at all without a spring. None without spring and damper.
-pub(crate) fn largest_step(scheme: Scheme, spring: f64, damper: f64) -> Option<f64> {
+pub(crate) fn largest_step(scheme: GranularScheme, spring: f64, damper: f64) -> Option<f64> {
     let frequency = spring.sqrt().max(damper);
     if frequency.is_nan() || frequency <= 0.0 || frequency.is_infinite() {
         return None;
@@ -105,17 +111,20 @@ mod tests {
     use stripmine_kernels::backend::Registers;
     use stripmine_kernels::integrator::Context;
 
-    const GEAR: [Scheme; 3] =
-        [Scheme::Gear(GearValues::Four), Scheme::Gear(GearValues::Five), Scheme::Gear(GearValues::Six)];
+    const GEAR: [GranularScheme; 3] = [
+        GranularScheme::Gear(GearValues::Four),
+        GranularScheme::Gear(GearValues::Five),
+        GranularScheme::Gear(GearValues::Six),
+    ];
 
     #[test]
     fn velocity_verlet_limit_is_two_radians() {
         for below in [0.1, 1.0, 1.9] {
-            let radius = spectral_radius(Scheme::VelocityVerlet, below * below, 0.0);
+            let radius = spectral_radius(GranularScheme::VelocityVerlet, below * below, 0.0);
             assert!((radius - 1.0).abs() < 1e-8, "{radius}");
         }
-        assert!(spectral_radius(Scheme::VelocityVerlet, 2.1 * 2.1, 0.0) > 1.1);
-        let limit = largest_step(Scheme::VelocityVerlet, 4.0, 0.0).unwrap();
+        assert!(spectral_radius(GranularScheme::VelocityVerlet, 2.1 * 2.1, 0.0) > 1.1);
+        let limit = largest_step(GranularScheme::VelocityVerlet, 4.0, 0.0).unwrap();
         assert!((limit - 1.0).abs() < 0.01, "{limit}");
     }
 
@@ -125,7 +134,7 @@ mod tests {
         for spring in [4.5f64, 6.0, 10.0] {
             let half = 1.0 - 0.5 * spring;
             let expected = half.abs() + (half * half - 1.0).sqrt();
-            let radius = spectral_radius(Scheme::VelocityVerlet, spring, 0.0);
+            let radius = spectral_radius(GranularScheme::VelocityVerlet, spring, 0.0);
             assert!((radius / expected - 1.0).abs() < 1e-9, "{radius} {expected}");
         }
     }
@@ -141,9 +150,9 @@ mod tests {
 
     /// Scheme with a wrong coefficient.
     #[derive(Clone, Copy)]
-    struct Wrong;
+    struct WrongScheme;
 
-    impl integrator::Scheme for Wrong {
+    impl integrator::Scheme for WrongScheme {
         const CARRIED: usize = 4;
 
         fn scales(dt: f64) -> [f64; DERIVATIVES] {
@@ -185,7 +194,7 @@ mod tests {
     fn wrong_coefficient_is_detected() {
         let radius = radius_of(right(), 4, 0.01, 0.0);
         assert!(radius < 1.001, "{radius}");
-        let radius = radius_of(Wrong, 4, 0.01, 0.0);
+        let radius = radius_of(WrongScheme, 4, 0.01, 0.0);
         assert!(radius > 1.5, "{radius}");
     }
 }

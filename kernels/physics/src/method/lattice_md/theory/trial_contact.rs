@@ -1,10 +1,10 @@
 //! Trial contacts: head-on collisions of two typical grains, integrated with the scene's own scheme and step.
 
 use super::contact::HeadOn;
-use crate::method::lattice_md::model::{GearValues, Scheme};
+use crate::method::lattice_md::model::{GearValues, GranularScheme};
 use stripmine_kernels::integrator;
 use stripmine_kernels::integrator::gear::{Acceleration, Gear};
-use stripmine_kernels::integrator::single::Single;
+use stripmine_kernels::integrator::single::SingleFreedom;
 use stripmine_kernels::integrator::velocity_verlet::VelocityVerlet;
 
 /// Number of phases within a step at which contacts begin.
@@ -30,13 +30,13 @@ pub(crate) struct ContactError {
 }
 
 /// Measures the error in trial contacts; none where nothing moves, or discs do not separate again.
-pub(crate) fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<ContactError> {
+pub(crate) fn contact_error(contact: HeadOn, scheme: GranularScheme, dt: f64) -> Option<ContactError> {
     let duration = contact.duration();
     if !(duration.is_finite() && duration > 0.0) {
         return None;
     }
     let step = dt.max(duration / MOST);
-    let trial = Trial(contact);
+    let trial = TrialContact(contact);
     let after =
         |step: f64, phase: u32| trial.energy_after(scheme, step, f64::from(phase) / f64::from(PHASES));
     let reference = after(REFERENCE * step, 0)?;
@@ -49,20 +49,20 @@ pub(crate) fn contact_error(contact: HeadOn, scheme: Scheme, dt: f64) -> Option<
     Some(ContactError { energy, order, step, phases: PHASES })
 }
 
-struct Trial(HeadOn);
+struct TrialContact(HeadOn);
 
-impl Trial {
+impl TrialContact {
     /// Returns the energy after the contact over that before, if the contact begins a fraction `phase` of a step late.
-    fn energy_after(&self, scheme: Scheme, step: f64, phase: f64) -> Option<f64> {
+    fn energy_after(&self, scheme: GranularScheme, step: f64, phase: f64) -> Option<f64> {
         let kind = match self.0.law.normal_damping {
             0.0 => Acceleration::OfPositions,
             _ => Acceleration::OfVelocities,
         };
         match scheme {
-            Scheme::Gear(GearValues::Four) => self.followed(Gear::<4>::new(kind), step, phase),
-            Scheme::Gear(GearValues::Five) => self.followed(Gear::<5>::new(kind), step, phase),
-            Scheme::Gear(GearValues::Six) => self.followed(Gear::<6>::new(kind), step, phase),
-            Scheme::VelocityVerlet => self.followed(VelocityVerlet, step, phase),
+            GranularScheme::Gear(GearValues::Four) => self.followed(Gear::<4>::new(kind), step, phase),
+            GranularScheme::Gear(GearValues::Five) => self.followed(Gear::<5>::new(kind), step, phase),
+            GranularScheme::Gear(GearValues::Six) => self.followed(Gear::<6>::new(kind), step, phase),
+            GranularScheme::VelocityVerlet => self.followed(VelocityVerlet, step, phase),
         }
     }
 
@@ -79,7 +79,7 @@ impl Trial {
         let speed = self.0.speed;
         // Starts a whole step and a fraction before the contact, so that the first derivatives are those of free flight.
         let gap = (1.0 + phase) * speed * step;
-        let mut single = Single::new(scheme, step).starting(-gap, speed, |_, _| 0.0);
+        let mut single = SingleFreedom::new(scheme, step).starting(-gap, speed, |_, _| 0.0);
         let most = (ENDLESS * self.0.duration() / step) as u64 + 64;
         for _ in 0..most {
             single.step(|overlap, velocity| self.acceleration(overlap, velocity));
@@ -102,7 +102,7 @@ mod tests {
     use stripmine_kernels::law::granular::{Contact, ContactArm};
     use stripmine_kernels::law::spring::Spring;
 
-    fn error(damping: f64, scheme: Scheme, steps: f64) -> ContactError {
+    fn error(damping: f64, scheme: GranularScheme, steps: f64) -> ContactError {
         let law = Contact {
             spring: Spring::Hertz,
             stiffness: 1e4,
@@ -119,9 +119,9 @@ mod tests {
     /// The kink of Hertz's force limits velocity Verlet to an order of 2½, the jump of the damping any scheme to 1.
     #[test]
     fn error_order_is_limited_by_the_law() {
-        let elastic = error(0.0, Scheme::VelocityVerlet, 60.0);
+        let elastic = error(0.0, GranularScheme::VelocityVerlet, 60.0);
         assert!((elastic.order - 2.5).abs() < 0.3, "{elastic:?}");
-        for scheme in [Scheme::VelocityVerlet, Scheme::Gear(GearValues::Five)] {
+        for scheme in [GranularScheme::VelocityVerlet, GranularScheme::Gear(GearValues::Five)] {
             let damped = error(4.0, scheme, 60.0);
             assert!((damped.order - 1.0).abs() < 0.3, "{damped:?}");
         }
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn contact_error_falls_with_more_steps() {
-        let scheme = Scheme::Gear(GearValues::Four);
+        let scheme = GranularScheme::Gear(GearValues::Four);
         let [few, many] = [4.0, 100.0].map(|steps| error(0.0, scheme, steps).energy);
         assert!(few > 0.03 && many < 1e-3, "{few} {many}");
         // Beyond a thousand steps the reported error is an upper bound.

@@ -1,41 +1,41 @@
 //! Leapfrog, and its compositions of higher order (Yoshida 1990). All are symplectic and reversible.
 
-use super::{Bodies, Columns, Field, Scheme, padded, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
 /// Sequence of leapfrogs (kick, drift, kick), each over a fraction of the step.
 #[derive(Clone, Debug)]
-pub(crate) struct Composed {
+pub(crate) struct ComposedLeapfrog {
     order: u32,
     /// Fractions of the step; their sum is 1.
     parts: Vec<f64>,
-    acceleration: Columns,
+    acceleration: StateColumns,
     /// True if the acceleration belongs to the current positions.
     is_known: bool,
 }
 
-impl Composed {
+impl ComposedLeapfrog {
     /// Composes a scheme from the fractions on either side of the middle one, listed outwards.
     fn new(order: u32, outwards: &[f64]) -> Self {
         let middle = 1.0 - 2.0 * outwards.iter().sum::<f64>();
         let parts = outwards.iter().rev().copied().chain([middle]).chain(outwards.iter().copied()).collect();
-        Composed { order, parts, acceleration: Columns::default(), is_known: false }
+        ComposedLeapfrog { order, parts, acceleration: StateColumns::default(), is_known: false }
     }
 
     /// Leapfrog, second order.
     pub(crate) fn leapfrog() -> Self {
-        Composed::new(2, &[])
+        ComposedLeapfrog::new(2, &[])
     }
 
     /// Fourth order.
     pub(crate) fn yoshida_4() -> Self {
-        Composed::new(4, &[1.0 / (2.0 - libm::cbrt(2.0))])
+        ComposedLeapfrog::new(4, &[1.0 / (2.0 - libm::cbrt(2.0))])
     }
 
     /// Sixth order, Yoshida's solution A.
     pub(crate) fn yoshida_6() -> Self {
-        Composed::new(6, &[-1.177_679_984_178_87, 0.235_573_213_359_357, 0.784_513_610_477_56])
+        ComposedLeapfrog::new(6, &[-1.177_679_984_178_87, 0.235_573_213_359_357, 0.784_513_610_477_56])
     }
 
     /// Eighth order, Yoshida's solution D.
@@ -49,14 +49,19 @@ impl Composed {
             0.253_693_336_566_229,
             0.914_844_246_229_74,
         ];
-        Composed::new(8, &outwards)
+        ComposedLeapfrog::new(8, &outwards)
     }
 }
 
-impl Scheme for Composed {
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+impl BodyIntegrator for ComposedLeapfrog {
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         room(&mut self.acceleration, bodies);
-        let Bodies { position, velocity, .. } = bodies;
+        let PointMasses { position, velocity, .. } = bodies;
         if !self.is_known {
             field.acceleration(position, &mut self.acceleration)?;
             self.is_known = true;
@@ -79,7 +84,7 @@ impl Scheme for Composed {
         self.order
     }
 
-    fn carried(&self) -> Vec<&Columns> {
+    fn carried(&self) -> Vec<&StateColumns> {
         // Recalculating it would give the same bits, but needs another sweep.
         if self.is_known { vec![&self.acceleration] } else { vec![] }
     }
@@ -88,7 +93,7 @@ impl Scheme for Composed {
         1
     }
 
-    fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
+    fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>) {
         self.is_known = !carried.is_empty();
         if let Some(acceleration) = carried.into_iter().next() {
             self.acceleration = padded(acceleration, bodies);

@@ -1,6 +1,6 @@
 //! First-order schemes: PWP's damped Euler and the explicit Euler.
 
-use super::{Bodies, Columns, Field, Scheme, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -12,23 +12,28 @@ use stripmine_kernels::isa::ProgramError;
 #[derive(Clone, Debug)]
 pub(crate) struct DampedEuler {
     damping: f64,
-    acceleration: Columns,
+    acceleration: StateColumns,
 }
 
 impl DampedEuler {
     /// Creates the scheme with the factor of the velocities at every step.
     pub(crate) fn new(damping: f64) -> Self {
-        DampedEuler { damping, acceleration: Columns::default() }
+        DampedEuler { damping, acceleration: StateColumns::default() }
     }
 }
 
-impl Scheme for DampedEuler {
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+impl BodyIntegrator for DampedEuler {
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         room(&mut self.acceleration, bodies);
         field.acceleration(&bodies.position, &mut self.acceleration)?;
         add(&mut bodies.velocity, dt, &self.acceleration);
         bodies.velocity.iter_mut().flatten().for_each(|v| *v *= self.damping);
-        let Bodies { position, velocity, .. } = bodies;
+        let PointMasses { position, velocity, .. } = bodies;
         add(position, dt, velocity);
         Ok(())
     }
@@ -37,7 +42,7 @@ impl Scheme for DampedEuler {
         1
     }
 
-    fn take_up(&mut self, _: &Bodies, _: Vec<Columns>) {}
+    fn take_up(&mut self, _: &PointMasses, _: Vec<StateColumns>) {}
 
     fn drains(&self) -> bool {
         self.damping < 1.0
@@ -48,21 +53,26 @@ impl Scheme for DampedEuler {
 #[derive(Clone, Debug)]
 pub(crate) struct Euler {
     share: f64,
-    acceleration: Columns,
+    acceleration: StateColumns,
 }
 
 impl Euler {
     /// Creates the scheme with a share of a dt² in the positions: 0 or ½.
     pub(crate) fn new(share: f64) -> Self {
-        Euler { share, acceleration: Columns::default() }
+        Euler { share, acceleration: StateColumns::default() }
     }
 }
 
-impl Scheme for Euler {
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+impl BodyIntegrator for Euler {
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         room(&mut self.acceleration, bodies);
         field.acceleration(&bodies.position, &mut self.acceleration)?;
-        let Bodies { position, velocity, .. } = bodies;
+        let PointMasses { position, velocity, .. } = bodies;
         add(position, dt, velocity);
         add(position, self.share * dt * dt, &self.acceleration);
         add(velocity, dt, &self.acceleration);
@@ -73,5 +83,5 @@ impl Scheme for Euler {
         1
     }
 
-    fn take_up(&mut self, _: &Bodies, _: Vec<Columns>) {}
+    fn take_up(&mut self, _: &PointMasses, _: Vec<StateColumns>) {}
 }

@@ -1,6 +1,6 @@
 //! Gear's six-value predictor and corrector for second-order equations.
 
-use super::{Bodies, Columns, Field, Scheme, padded, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, room};
 use crate::method::nbody::bodies::{add, zeros};
 use stripmine_kernels::isa::ProgramError;
 
@@ -12,16 +12,21 @@ const CORRECTOR: [f64; VALUES] = [3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1
 
 /// Gear's scheme, started exactly: with zeros for the higher derivatives it would be of second order only.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Gear {
+pub(crate) struct SixValueGear {
     /// q_2 to q_5; q_0 and q_1 are position and velocity · dt.
-    higher: Vec<Columns>,
-    acceleration: Columns,
+    higher: Vec<StateColumns>,
+    acceleration: StateColumns,
     is_known: bool,
 }
 
-impl Gear {
+impl SixValueGear {
     /// Initialises the higher values from the exact derivatives of the acceleration.
-    fn start(&mut self, bodies: &Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+    fn start(
+        &mut self,
+        bodies: &PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         self.higher = (2..VALUES).map(|_| zeros(bodies.entries())).collect();
         field.derivatives(&bodies.position, &bodies.velocity, &mut self.higher)?;
         let mut scale = dt;
@@ -33,8 +38,13 @@ impl Gear {
     }
 }
 
-impl Scheme for Gear {
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+impl BodyIntegrator for SixValueGear {
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         room(&mut self.acceleration, bodies);
         if !self.is_known {
             self.start(bodies, dt, field)?;
@@ -72,7 +82,7 @@ impl Scheme for Gear {
         5
     }
 
-    fn carried(&self) -> Vec<&Columns> {
+    fn carried(&self) -> Vec<&StateColumns> {
         self.higher.iter().collect()
     }
 
@@ -80,7 +90,7 @@ impl Scheme for Gear {
         VALUES - 2
     }
 
-    fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
+    fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>) {
         self.is_known = !carried.is_empty();
         self.higher = carried.into_iter().map(|columns| padded(columns, bodies)).collect();
     }

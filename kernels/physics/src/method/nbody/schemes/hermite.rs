@@ -1,6 +1,6 @@
 //! Fourth-order Hermite scheme with jerk: predict, evaluate, correct (Makino and Aarseth 1992).
 
-use super::{Bodies, Columns, Field, Scheme, padded, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -8,23 +8,28 @@ use stripmine_kernels::isa::ProgramError;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hermite {
     /// Acceleration and jerk at the beginning of the step.
-    begin: [Columns; 2],
+    begin: [StateColumns; 2],
     /// Acceleration and jerk at the predicted end.
-    end: [Columns; 2],
-    position: Columns,
-    velocity: Columns,
+    end: [StateColumns; 2],
+    position: StateColumns,
+    velocity: StateColumns,
     is_known: bool,
 }
 
-impl Scheme for Hermite {
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+impl BodyIntegrator for Hermite {
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         self.begin.iter_mut().chain(&mut self.end).for_each(|columns| room(columns, bodies));
         if !self.is_known {
             field.derivatives(&bodies.position, &bodies.velocity, &mut self.begin)?;
             self.is_known = true;
         }
         let [a, j] = &self.begin;
-        let Bodies { position, velocity, .. } = bodies;
+        let PointMasses { position, velocity, .. } = bodies;
         self.position.clone_from(position);
         self.velocity.clone_from(velocity);
         add(&mut self.position, dt, velocity);
@@ -51,7 +56,7 @@ impl Scheme for Hermite {
         4
     }
 
-    fn carried(&self) -> Vec<&Columns> {
+    fn carried(&self) -> Vec<&StateColumns> {
         if self.is_known { self.begin.iter().collect() } else { vec![] }
     }
 
@@ -59,7 +64,7 @@ impl Scheme for Hermite {
         self.begin.len()
     }
 
-    fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>) {
+    fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>) {
         self.is_known = !carried.is_empty();
         for (begin, columns) in self.begin.iter_mut().zip(carried) {
             *begin = padded(columns, bodies);

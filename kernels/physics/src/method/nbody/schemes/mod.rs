@@ -6,29 +6,33 @@ mod gear;
 mod hermite;
 mod runge_kutta;
 
-use super::bodies::{Bodies, Columns};
+use super::bodies::{PointMasses, StateColumns};
 use crate::words::define_words;
 use stripmine_kernels::isa::ProgramError;
 
-pub(crate) use composed::Composed;
+pub(crate) use composed::ComposedLeapfrog;
 pub(crate) use euler::{DampedEuler, Euler};
-pub(crate) use gear::Gear;
+pub(crate) use gear::SixValueGear;
 pub(crate) use hermite::Hermite;
 pub(crate) use runge_kutta::RungeKutta;
 
 /// Force field as schemes use it.
-pub trait Field {
+pub trait AccelerationField {
     /// Calculates the accelerations at these positions (length/time²).
     ///
     /// # Errors
     /// [`ProgramError`] if the processor lacks the instruction set, or the evaluation is interrupted.
-    fn acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError>;
+    fn acceleration(&mut self, position: &StateColumns, into: &mut StateColumns) -> Result<(), ProgramError>;
 
     /// Calculates the accelerations at the end of a step, whose energy may be needed next.
     ///
     /// # Errors
     /// As [`Field::acceleration`].
-    fn last_acceleration(&mut self, position: &Columns, into: &mut Columns) -> Result<(), ProgramError> {
+    fn last_acceleration(
+        &mut self,
+        position: &StateColumns,
+        into: &mut StateColumns,
+    ) -> Result<(), ProgramError> {
         self.acceleration(position, into)
     }
 
@@ -38,25 +42,30 @@ pub trait Field {
     /// As [`Field::acceleration`].
     fn derivatives(
         &mut self,
-        position: &Columns,
-        velocity: &Columns,
-        orders: &mut [Columns],
+        position: &StateColumns,
+        velocity: &StateColumns,
+        orders: &mut [StateColumns],
     ) -> Result<(), ProgramError>;
 }
 
 /// Integrator of the equations of motion.
-pub trait Scheme: Send {
+pub trait BodyIntegrator: Send {
     /// Advances the bodies by `dt` (time).
     ///
     /// # Errors
     /// [`ProgramError`] of the field; bodies and scheme are then left within the step.
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError>;
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError>;
 
     /// Order of convergence: with n times as many steps the error at a fixed time is about n^order smaller.
     fn order(&self) -> u32;
 
     /// Values carried between steps that cannot be calculated from positions and velocities.
-    fn carried(&self) -> Vec<&Columns> {
+    fn carried(&self) -> Vec<&StateColumns> {
         vec![]
     }
 
@@ -66,7 +75,7 @@ pub trait Scheme: Send {
     }
 
     /// Restores the values of [`carried`](Self::carried), without padding; the bodies are already restored.
-    fn take_up(&mut self, bodies: &Bodies, carried: Vec<Columns>);
+    fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>);
 
     /// True if the scheme dissipates energy on purpose.
     fn drains(&self) -> bool {
@@ -102,18 +111,18 @@ define_words! {
 
 impl SchemeName {
     /// Creates the scheme; `damping` is the factor of the velocities at every step of PWP's scheme.
-    pub fn scheme(self, damping: f64) -> Box<dyn Scheme> {
+    pub fn scheme(self, damping: f64) -> Box<dyn BodyIntegrator> {
         match self {
             SchemeName::DampedEuler => Box::new(DampedEuler::new(damping)),
             SchemeName::Euler => Box::new(Euler::new(0.0)),
             SchemeName::EulerWithHalf => Box::new(Euler::new(0.5)),
-            SchemeName::Leapfrog => Box::new(Composed::leapfrog()),
-            SchemeName::Yoshida4 => Box::new(Composed::yoshida_4()),
-            SchemeName::Yoshida6 => Box::new(Composed::yoshida_6()),
-            SchemeName::Yoshida8 => Box::new(Composed::yoshida_8()),
+            SchemeName::Leapfrog => Box::new(ComposedLeapfrog::leapfrog()),
+            SchemeName::Yoshida4 => Box::new(ComposedLeapfrog::yoshida_4()),
+            SchemeName::Yoshida6 => Box::new(ComposedLeapfrog::yoshida_6()),
+            SchemeName::Yoshida8 => Box::new(ComposedLeapfrog::yoshida_8()),
             SchemeName::RungeKutta4 => Box::new(RungeKutta::default()),
             SchemeName::Hermite4 => Box::new(Hermite::default()),
-            SchemeName::Gear6 => Box::new(Gear::default()),
+            SchemeName::Gear6 => Box::new(SixValueGear::default()),
         }
     }
 }
@@ -135,14 +144,14 @@ impl SchemeName {
 }
 
 /// Resizes columns to the entries of `bodies`.
-fn room(columns: &mut Columns, bodies: &Bodies) {
+fn room(columns: &mut StateColumns, bodies: &PointMasses) {
     for column in columns {
         column.resize(bodies.entries(), 0.0);
     }
 }
 
 /// Extends columns by the padding of the bodies.
-fn padded(mut columns: Columns, bodies: &Bodies) -> Columns {
+fn padded(mut columns: StateColumns, bodies: &PointMasses) -> StateColumns {
     room(&mut columns, bodies);
     columns
 }

@@ -1,6 +1,6 @@
 //! Classical fourth-order Runge–Kutta scheme. Its energy drifts.
 
-use super::{Bodies, Columns, Field, Scheme, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, room};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -8,14 +8,19 @@ use stripmine_kernels::isa::ProgramError;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RungeKutta {
     /// Accelerations of the four stages.
-    stages: [Columns; 4],
-    at: Columns,
+    stages: [StateColumns; 4],
+    at: StateColumns,
 }
 
-impl Scheme for RungeKutta {
-    fn step(&mut self, bodies: &mut Bodies, dt: f64, field: &mut dyn Field) -> Result<(), ProgramError> {
+impl BodyIntegrator for RungeKutta {
+    fn step(
+        &mut self,
+        bodies: &mut PointMasses,
+        dt: f64,
+        field: &mut dyn AccelerationField,
+    ) -> Result<(), ProgramError> {
         self.stages.iter_mut().for_each(|stage| room(stage, bodies));
-        let Bodies { position, velocity, .. } = bodies;
+        let PointMasses { position, velocity, .. } = bodies;
         // Stage velocities are v + c dt a of the previous stage, so positions use a of the stage before that.
         for stage in 0..4 {
             let [c, before] = [[0.0, 0.0], [0.5, 0.0], [0.5, 0.25], [1.0, 0.5]][stage];
@@ -41,5 +46,5 @@ impl Scheme for RungeKutta {
         4
     }
 
-    fn take_up(&mut self, _: &Bodies, _: Vec<Columns>) {}
+    fn take_up(&mut self, _: &PointMasses, _: Vec<StateColumns>) {}
 }

@@ -1,16 +1,16 @@
 //! Distribution of discs to the ranks: at the start, again when they have moved far, and from a saved state.
 
-use super::layout::{Layout, Side};
-use super::wire::{Columns, column_like, entries};
-use super::worker::Worker;
+use super::layout::{BandLayout, RankSide};
+use super::wire::{NamedColumns, column_like, entries};
+use super::worker::RankWorker;
 use crate::method::pairwise::saved::CELL;
-use crate::method::pairwise::search::{Cells, Search};
+use crate::method::pairwise::search::{PairSearch, SearchCells};
 use crate::method::pairwise::state::Members;
 use crate::ranks::{Parcel, RankError, numbers};
 use std::collections::HashMap;
 use stripmine_kernels::backend::Precision;
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     /// Takes the discs that this rank owns or needs near its bands, given the rows of all discs of the scene.
     pub(super) fn take_part(&mut self, rows: &[u32]) {
         let grains = self.engine.start.grain_count();
@@ -35,18 +35,18 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     /// Distributes bands by their weights.
     fn deal_out(&mut self, weights: &[u64]) {
         let (rows, periodic) = (self.engine.search.rows(), self.engine.search.cells().grid().periodic[1]);
-        self.layout = Layout::new(rows, periodic, weights, self.ranks.count());
+        self.layout = BandLayout::new(rows, periodic, weights, self.ranks.count());
     }
 
     /// Replaces the discs by those of this rank, nearby ones of other ranks, and walls, none in its cell yet.
     fn hold(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
         let (rank, [below, above]) = (self.ranks.rank(), self.ranks.neighbours());
-        let on_side = |discs: &[u32], rank: usize, side: Side| -> Vec<u32> {
+        let on_side = |discs: &[u32], rank: usize, side: RankSide| -> Vec<u32> {
             discs.iter().copied().filter(|&disc| self.layout.side(rank, row(disc)) == Some(side)).collect()
         };
         // Discs below a rank belong to the rank below, which sends them upwards.
-        self.from = [on_side(&near, rank, Side::Below), on_side(&near, rank, Side::Above)];
-        self.to = [on_side(&own, below, Side::Above), on_side(&own, above, Side::Below)];
+        self.from = [on_side(&near, rank, RankSide::Below), on_side(&near, rank, RankSide::Above)];
+        self.to = [on_side(&own, below, RankSide::Above), on_side(&own, above, RankSide::Below)];
         self.homes.clear();
         let (moving, grains) = (own.len(), own.len() + near.len());
         let numbers: Vec<u32> = own.into_iter().chain(near).chain(walls).collect();
@@ -106,7 +106,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     fn hold_again(
         &mut self,
         mut discs: Vec<(bool, u32, Vec<f64>)>,
-        template: &Columns,
+        template: &NamedColumns,
     ) -> Result<(), String> {
         discs.sort_unstable_by_key(|&(is_near, number, _)| (is_near, number));
         let (grains, all) = (self.engine.state.grains(), self.engine.state.len());
@@ -115,7 +115,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         let of_walls = self.engine.columns_of(&walls);
         let walls: Vec<u32> =
             walls.iter().map(|&disc| self.engine.state.number(disc as usize) as u32).collect();
-        let columns: Columns = (template.iter().zip(&of_walls).enumerate())
+        let columns: NamedColumns = (template.iter().zip(&of_walls).enumerate())
             .map(|(at, ((name, like), (_, of_walls)))| {
                 let values = discs.iter().map(|disc| disc.2[at]).chain(entries(of_walls));
                 (name.clone(), column_like(like, values.collect()))
@@ -140,7 +140,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Restores the state of the whole scene.
-    pub(super) fn restore(&mut self, steps: u64, columns: &Columns) -> Result<(), String> {
+    pub(super) fn restore(&mut self, steps: u64, columns: &NamedColumns) -> Result<(), String> {
         let rows = columns.iter().find(|(name, _)| name == CELL[1]);
         let count = self.engine.search.rows().count;
         let rows: Vec<u32> = rows.map_or(vec![], |(_, column)| {

@@ -1,13 +1,13 @@
 //! Distribution of a scene to ranks at the start.
 
-use super::first::{Ranked, Threads};
+use super::first::{FirstRank, RankThreads};
 use super::orders::serve;
-use super::wire::Order;
-use super::worker::{Begun, Worker, all_rows};
-use crate::method::pairwise::search::Search;
+use super::wire::RankOrder;
+use super::worker::{PartStart, RankWorker, all_rows};
+use crate::method::pairwise::search::PairSearch;
 use crate::method::pairwise::state::Members;
-use crate::method::pairwise::{Compiled, Crossings, Elapsed, Engine, System};
-use crate::method::{Clock, DISMISSED, Failure, FailureKind, ended};
+use crate::method::pairwise::{CompiledDynamics, Crossings, Elapsed, PairEngine, PairSystem};
+use crate::method::{Clock, DISMISSED, FailureKind, PhysicsFailure, ended};
 use crate::particles::Particles;
 use crate::ranks::{RankError, Ranks, local};
 use std::collections::HashSet;
@@ -20,36 +20,36 @@ use stripmine_kernels::backend::Precision;
 const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 
 /// Data of a scene shared by all ranks, without its particles.
-pub(super) struct Scene<S, P, Q> {
-    pub(super) dynamics: Arc<dyn Compiled<S, P, Q>>,
-    pub(super) system: System,
+pub(super) struct RankedScene<S, P, Q> {
+    pub(super) dynamics: Arc<dyn CompiledDynamics<S, P, Q>>,
+    pub(super) system: PairSystem,
     pub(super) set: InstructionSet,
     pub(super) search: Q,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
-    pub(super) fn refuse_too_many(&self, count: usize) -> Result<(), Failure> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static> RankedScene<S, P, Q> {
+    pub(super) fn refuse_too_many(&self, count: usize) -> Result<(), PhysicsFailure> {
         let bands = self.search.rows().bands().len();
         if count <= bands {
             return Ok(());
         }
         let what = format!("{count} ranks are more than the {bands} bands of rows that the scene has");
         let remedy = format!("use at most {bands} ranks, or more particles");
-        Err(Failure::new(TOO_MANY, what, remedy))
+        Err(PhysicsFailure::new(TOO_MANY, what, remedy))
     }
 
     /// Builds the part of a rank at the start.
-    pub(super) fn part(&self, ranks: Box<dyn Ranks>, start: Arc<Particles>) -> Begun {
+    pub(super) fn part(&self, ranks: Box<dyn Ranks>, start: Arc<Particles>) -> PartStart {
         let elapsed = Elapsed::new(self.system.dt, Crossings::new(self.system.followed, start.len()));
         let none = Members { numbers: vec![], moving: 0, grains: 0 };
         let search = self.search.emptied(0, all_rows(self.search.rows()));
         let all = (self.dynamics.clone(), self.system.clone(), self.set);
-        let worker = Worker::new(ranks, Engine::of(all, search, start, none, elapsed))?;
+        let worker = RankWorker::new(ranks, PairEngine::of(all, search, start, none, elapsed))?;
         Ok(Box::new(worker))
     }
 
     /// Starts the other ranks on threads and returns the first rank.
-    pub(super) fn on_threads(&self, count: usize, particles: Particles) -> Result<Ranked, Failure> {
+    pub(super) fn on_threads(&self, count: usize, particles: Particles) -> Result<FirstRank, PhysicsFailure> {
         let start = Arc::new(particles);
         let per_rank = rayon::current_num_threads();
         let mut rest = local::ranks(count, per_rank);
@@ -57,8 +57,8 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
         let mut threads = vec![];
         for ranks in rest {
             let search = self.search.emptied(0, all_rows(self.search.rows()));
-            let Scene { dynamics, system, set, .. } = self;
-            let scene = Scene { dynamics: dynamics.clone(), system: system.clone(), set: *set, search };
+            let RankedScene { dynamics, system, set, .. } = self;
+            let scene = RankedScene { dynamics: dynamics.clone(), system: system.clone(), set: *set, search };
             let start = start.clone();
             // The first rank detects a loss itself.
             let work = move || _ = serve_one(scene.part(Box::new(ranks), start));
@@ -68,18 +68,18 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
             });
             threads.push(spawned.map_err(|error| {
                 let what = format!("cannot start a thread for a rank: {error}");
-                Failure::new(TOO_MANY, what, "use fewer ranks or --threads")
+                PhysicsFailure::new(TOO_MANY, what, "use fewer ranks or --threads")
             })?);
         }
-        Ranked::of(first, Threads(threads), |ranks| self.part(ranks, start))
+        FirstRank::of(first, RankThreads(threads), |ranks| self.part(ranks, start))
     }
 
     /// Serves simulations on a process other than the first, one after the other, until the first ends it.
-    pub(super) fn serve(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> Failure {
+    pub(super) fn serve(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> PhysicsFailure {
         loop {
             let ids: HashSet<u32> = match join().tell_message::<Option<Vec<u32>>>(None) {
                 Ok(Some(ids)) => ids.into_iter().collect(),
-                Ok(None) => return Failure::new(DISMISSED, "this rank is dismissed", ""),
+                Ok(None) => return PhysicsFailure::new(DISMISSED, "this rank is dismissed", ""),
                 Err(lost) => return ended(lost, Clock::default()),
             };
             let there = particles.all().iter().filter(|particle| ids.contains(&particle.id));
@@ -97,16 +97,16 @@ impl<S: Precision, P: Precision, Q: Search<S, P> + 'static> Scene<S, P, Q> {
 ///
 /// # Errors
 /// As [`serve`].
-fn serve_one(part: Begun) -> Result<(), RankError> {
+fn serve_one(part: PartStart) -> Result<(), RankError> {
     match part {
         Ok(part) => {
-            part.ranks().gather_messages(None::<Failure>)?;
+            part.ranks().gather_messages(None::<PhysicsFailure>)?;
             serve(part)
         }
         Err((ranks, failure)) => {
             ranks.gather_messages(Some(failure))?;
             // Wait for the end announced by the first rank.
-            ranks.tell_message::<Option<Order>>(None).map(drop)
+            ranks.tell_message::<Option<RankOrder>>(None).map(drop)
         }
     }
 }

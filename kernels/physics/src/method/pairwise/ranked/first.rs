@@ -1,67 +1,69 @@
 //! First rank: the simulation that all other code uses.
 
-use super::wire::{Crossed, Do, ForcesReport, Order, Record, StepReport, What, column_like, put_own};
-use super::worker::{Begun, Part};
+use super::wire::{
+    CrossedPeriods, DiscRecord, Do, ForcesReport, RankOrder, RankSample, StepReport, column_like, put_own,
+};
+use super::worker::{PartStart, RankPart};
 use crate::domain::Domain;
-use crate::io::checkpoint::Column;
-use crate::method::pairwise::observing::{Standing, contact_sums, sums_of_grains};
-use crate::method::pairwise::{Elapsed, Losing, Named, Stepping, Work, wrapped};
-use crate::method::{Clock, Failure, FailureKind, PerParticle, ended};
-use crate::observe::{Scenery, Sums};
-use crate::particles::{Particles, States, in_space};
+use crate::io::checkpoint::CheckpointColumn;
+use crate::method::pairwise::observing::{StepEndDisc, contact_sums, sums_of_grains};
+use crate::method::pairwise::{Elapsed, GravityWork, NameableDiscs, RemovableDiscs, SteppingDiscs, wrapped};
+use crate::method::{Clock, FailureKind, PerParticle, PhysicsFailure, ended};
+use crate::observe::{ObservationSums, SceneProperties};
+use crate::particles::{GrainStates, Particles, in_space};
 use crate::ranks::{Parcel, RankError, Ranks};
 use serde::de::DeserializeOwned;
 use std::cell::OnceCell;
 use std::ops::Range;
 use std::thread::JoinHandle;
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::{Met, OfBand};
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::sweep::fast::{BandReport, SweepReport};
 
 /// First rank, which represents all.
-pub(super) struct Ranked {
-    worker: Box<dyn Part>,
+pub(super) struct FirstRank {
+    worker: Box<dyn RankPart>,
     /// Dropped after the worker: a rank that waits for the first one ends when the first one's end of the channel is closed.
-    _threads: Threads,
+    _threads: RankThreads,
     /// News for all ranks before their next order: crossed periods by rank, and whether to redistribute discs.
-    crossed: Vec<(usize, Crossed)>,
+    crossed: Vec<(usize, CrossedPeriods)>,
     is_to_migrate: bool,
     shared_cells: usize,
     /// Discs reported by a step or its forces, grains first, from any rank.
-    named: Vec<Record>,
+    named: Vec<DiscRecord>,
     /// Reason why the other ranks were ended: the first loss detected by a step or a sample. Samples since then lack a rank; every later step and
     /// check fails with this reason.
-    stopped: OnceCell<Failure>,
+    stopped: OnceCell<PhysicsFailure>,
 }
 
 /// Threads of ranks, joined on drop.
-pub(super) struct Threads(pub(super) Vec<JoinHandle<()>>);
+pub(super) struct RankThreads(pub(super) Vec<JoinHandle<()>>);
 
-impl Drop for Threads {
+impl Drop for RankThreads {
     fn drop(&mut self) {
         self.0.drain(..).for_each(|thread| _ = thread.join());
     }
 }
 
-impl Ranked {
+impl FirstRank {
     /// Builds the first rank after all have started.
     pub(super) fn of(
         ranks: Box<dyn Ranks>,
-        threads: Threads,
-        part: impl FnOnce(Box<dyn Ranks>) -> Begun,
-    ) -> Result<Self, Failure> {
+        threads: RankThreads,
+        part: impl FnOnce(Box<dyn Ranks>) -> PartStart,
+    ) -> Result<Self, PhysicsFailure> {
         let worker = match part(ranks) {
             Ok(worker) => worker,
             Err((ranks, failure)) => {
                 // The others have started, or failed as well.
                 #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
-                let _ = ranks.gather_messages(None::<Failure>);
+                let _ = ranks.gather_messages(None::<PhysicsFailure>);
                 #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
-                let _ = ranks.tell_message(Some(None::<Order>));
+                let _ = ranks.tell_message(Some(None::<RankOrder>));
                 return Err(failure);
             }
         };
         // Dropped if a rank has failed, which ends the others.
-        let ranked = Ranked {
+        let ranked = FirstRank {
             worker,
             _threads: threads,
             crossed: vec![],
@@ -70,33 +72,33 @@ impl Ranked {
             named: vec![],
             stopped: OnceCell::new(),
         };
-        let begun = ranked.worker.ranks().gather_messages(None::<Failure>);
+        let begun = ranked.worker.ranks().gather_messages(None::<PhysicsFailure>);
         let begun = begun.map_err(|lost| ranked.lose(lost))?;
         first_of(begun).map(|()| ranked)
     }
 }
 
-impl Ranked {
-    fn engine(&self) -> &dyn Stepping {
+impl FirstRank {
+    fn engine(&self) -> &dyn SteppingDiscs {
         self.worker.engine()
     }
 
-    fn tell(&self, order: &Order) -> Result<(), RankError> {
+    fn tell(&self, order: &RankOrder) -> Result<(), RankError> {
         self.worker.ranks().tell(Some(Parcel::of(&Some(order)))).map(drop)
     }
 
     /// Makes all ranks execute an order that changes something; returns their answers.
-    fn order<T: DeserializeOwned>(&mut self, what: Do) -> Result<Vec<T>, Failure> {
+    fn order<T: DeserializeOwned>(&mut self, what: Do) -> Result<Vec<T>, PhysicsFailure> {
         self.check_ranks()?;
         let crossed = std::mem::take(&mut self.crossed);
-        let order = Order { crossed, is_to_migrate: std::mem::take(&mut self.is_to_migrate), what };
+        let order = RankOrder { crossed, is_to_migrate: std::mem::take(&mut self.is_to_migrate), what };
         let answered = self.tell(&order).and_then(|()| self.worker.follow(order));
         let answers = answered.and_then(|own| self.worker.ranks().gather(own));
         answers.and_then(|all| opened(&all)).map_err(|lost| self.lose(lost))
     }
 
     /// Makes all ranks sample something; `found` combines their answers. Returns the default if a rank is lost.
-    fn look<R: Default>(&self, what: What, found: impl FnOnce(&[Parcel]) -> Result<R, RankError>) -> R {
+    fn look<R: Default>(&self, what: RankSample, found: impl FnOnce(&[Parcel]) -> Result<R, RankError>) -> R {
         let look = || {
             self.tell(&Do::Look(what).into())?;
             found(&self.worker.ranks().gather(self.worker.look(what)?)?)
@@ -114,12 +116,12 @@ impl Ranked {
     }
 
     /// Stores the first loss of a rank as a failure; all others then end, whatever message they wait for.
-    fn lose(&self, lost: RankError) -> Failure {
+    fn lose(&self, lost: RankError) -> PhysicsFailure {
         self.stop(&Parcel::lost(RankError::Ended(0)), || ended(lost, self.clock()))
     }
 
     /// Makes the other ranks end for a reason; returns the first reason.
-    fn stop(&self, told: &Parcel, why: impl FnOnce() -> Failure) -> Failure {
+    fn stop(&self, told: &Parcel, why: impl FnOnce() -> PhysicsFailure) -> PhysicsFailure {
         let stop = || {
             #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
             let _ = self.worker.ranks().tell(Some(told.clone()));
@@ -129,7 +131,7 @@ impl Ranked {
     }
 
     /// Combines the reports of a step; returns the discs that moved far.
-    fn heard(&mut self, reports: Vec<StepReport>) -> Result<Vec<u32>, Failure> {
+    fn heard(&mut self, reports: Vec<StepReport>) -> Result<Vec<u32>, PhysicsFailure> {
         let (mut failures, mut far) = (vec![], vec![]);
         self.shared_cells = 0;
         for (rank, report) in reports.into_iter().enumerate() {
@@ -149,19 +151,20 @@ impl Ranked {
     }
 
     /// Stores discs to be named and returns their indices.
-    fn name(&mut self, discs: Vec<Record>) -> Vec<u32> {
+    fn name(&mut self, discs: Vec<DiscRecord>) -> Vec<u32> {
         let mut named = discs.clone();
         named.sort_by_key(|disc| (!disc.is_grain, disc.number));
         named.dedup_by_key(|disc| disc.number);
-        let at =
-            |disc: &Record| named.iter().position(|it| it.number == disc.number).unwrap_or_default() as u32;
+        let at = |disc: &DiscRecord| {
+            named.iter().position(|it| it.number == disc.number).unwrap_or_default() as u32
+        };
         let places = discs.iter().map(at).collect();
         self.named = named;
         places
     }
 
     /// Collects values of each of the scene's discs from its rank; NaN where a rank is lost.
-    fn each<const N: usize>(&self, what: What) -> Vec<[f64; N]> {
+    fn each<const N: usize>(&self, what: RankSample) -> Vec<[f64; N]> {
         let none = || vec![[f64::NAN; N]; self.engine().start().len()];
         let found = |answers: &[Parcel]| {
             let mut all = none();
@@ -173,7 +176,7 @@ impl Ranked {
 
     /// Position, angle and their rates of each of the scene's discs at the end of the step.
     fn standing(&self) -> Vec<[f64; 6]> {
-        self.each(What::Standing)
+        self.each(RankSample::Standing)
     }
 }
 
@@ -183,27 +186,27 @@ fn opened<T: DeserializeOwned>(answers: &[Parcel]) -> Result<Vec<T>, RankError> 
 }
 
 /// Selects the failure that a single rank would have reported, and adds the rank that it comes from.
-fn first_of(failures: Vec<Option<Failure>>) -> Result<(), Failure> {
+fn first_of(failures: Vec<Option<PhysicsFailure>>) -> Result<(), PhysicsFailure> {
     let failures = failures.into_iter().enumerate().filter_map(|(rank, it)| Some((rank, it?)));
-    let failures: Vec<(usize, Failure)> = failures.collect();
-    let first = |failure: &Failure| failure.culprits.first().map(|culprit| culprit.id);
+    let failures: Vec<(usize, PhysicsFailure)> = failures.collect();
+    let first = |failure: &PhysicsFailure| failure.culprits.first().map(|culprit| culprit.id);
     let count = failures.iter().map(|(_, failure)| failure.count).max().unwrap_or(0);
     match failures.into_iter().min_by_key(|(_, failure)| first(failure)) {
         Some((rank, failure)) => {
             let message = format!("{} (rank {rank})", failure.message);
-            Err(Failure { message, count, ..failure })
+            Err(PhysicsFailure { message, count, ..failure })
         }
         None => Ok(()),
     }
 }
 
-impl Drop for Ranked {
+impl Drop for FirstRank {
     fn drop(&mut self) {
         self.end();
     }
 }
 
-impl Named for Ranked {
+impl NameableDiscs for FirstRank {
     fn clock(&self) -> Clock {
         self.engine().clock()
     }
@@ -237,7 +240,7 @@ impl Named for Ranked {
     }
 }
 
-impl PerParticle for Ranked {
+impl PerParticle for FirstRank {
     fn particles(&self) -> Particles {
         wrapped(self.unwrapped(), &self.engine().domain())
     }
@@ -246,7 +249,7 @@ impl PerParticle for Ranked {
         self.stopped.get().is_none()
     }
 
-    fn states(&self, states: &mut States) {
+    fn states(&self, states: &mut GrainStates) {
         let domain = self.engine().domain();
         for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
             states.put(number, domain.wrapped([x, y]), [vx, vy]);
@@ -269,13 +272,13 @@ impl PerParticle for Ranked {
     }
 }
 
-impl Stepping for Ranked {
-    fn advance(&mut self) -> Result<Vec<u32>, Failure> {
+impl SteppingDiscs for FirstRank {
+    fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
         let reports = self.order(Do::Advance)?;
         self.heard(reports)
     }
 
-    fn compute_forces(&mut self, asked: Asked) -> Result<Met, Failure> {
+    fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
         let reports: Vec<ForcesReport> = self.order(Do::Forces(asked))?;
         let (mut failures, mut deep, mut of_bands) = (vec![], vec![], vec![]);
         for report in reports {
@@ -286,13 +289,13 @@ impl Stepping for Ranked {
         }
         first_of(failures)?;
         let deep = self.name(deep.concat()).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        Ok(Met { deep, ..Met::of(of_bands) })
+        Ok(SweepReport { deep, ..SweepReport::of(of_bands) })
     }
 
     fn end(&mut self) {
         let what = "this simulation has already been ended on all ranks";
-        let why = || Failure::new(FailureKind::MACHINE, what, "report this with the scene");
-        self.stop(&Parcel::of(&None::<Order>), why);
+        let why = || PhysicsFailure::new(FailureKind::MACHINE, what, "report this with the scene");
+        self.stop(&Parcel::of(&None::<RankOrder>), why);
     }
 
     fn elapsed(&self) -> &Elapsed {
@@ -313,7 +316,7 @@ impl Stepping for Ranked {
 
     fn lists(&self) -> Option<(usize, u64)> {
         let (_, made) = self.engine().lists()?;
-        let listed: Vec<usize> = self.look(What::Listed, opened);
+        let listed: Vec<usize> = self.look(RankSample::Listed, opened);
         Some((listed.into_iter().sum(), made))
     }
 
@@ -336,56 +339,56 @@ impl Stepping for Ranked {
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {
-        self.each(What::Forces)
+        self.each(RankSample::Forces)
     }
 
-    fn check_ranks(&self) -> Result<(), Failure> {
+    fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         self.stopped.get().map_or(Ok(()), |failure| Err(failure.clone()))
     }
 
-    fn columns(&self) -> Vec<(String, Column)> {
+    fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         let [of_each, of_all] = self.worker.columns();
         let columns = of_each.into_iter().enumerate().map(|(place, (name, like))| {
-            let values = self.each(What::Column(place)).into_iter().map(|[value]| value).collect();
+            let values = self.each(RankSample::Column(place)).into_iter().map(|[value]| value).collect();
             (name, column_like(&like, values))
         });
         columns.chain(of_all).collect()
     }
 
-    fn restore(&mut self, steps: u64, columns: &[(String, Column)]) -> Result<(), String> {
+    fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         self.is_to_migrate = false;
         let answers = self.order::<Result<(), String>>(Do::Restore { steps, columns: columns.to_vec() });
         answers.map_err(|failure| failure.what())?.into_iter().collect()
     }
 
-    fn sums(&self, scenery: &Scenery, work: &Work<'_>) -> Sums {
+    fn sums(&self, scenery: &SceneProperties, work: &GravityWork<'_>) -> ObservationSums {
         let standing = self.standing();
         let grains = sums_of_grains(self.engine().start().grains(), (scenery, work), |number| {
             let [x, y, _, vx, vy, omega] = standing[number];
-            Standing { position: [x, y], velocity: [vx, vy], omega }
+            StepEndDisc { position: [x, y], velocity: [vx, vy], omega }
         });
-        let met = Met::of(self.look(What::Contacts, opened::<Vec<OfBand>>).concat());
-        Sums { grains, contacts: contact_sums(&met) }
+        let met = SweepReport::of(self.look(RankSample::Contacts, opened::<Vec<BandReport>>).concat());
+        ObservationSums { grains, contacts: contact_sums(&met) }
     }
 }
 
-impl Losing for Ranked {
+impl RemovableDiscs for FirstRank {
     fn predicted_velocities(&self) -> Vec<[f64; 2]> {
-        self.each(What::Velocities)
+        self.each(RankSample::Velocities)
     }
 
-    fn skip_forces(&mut self) -> Result<(), Failure> {
+    fn skip_forces(&mut self) -> Result<(), PhysicsFailure> {
         let answers: Vec<Result<(), String>> = self.order(Do::SkipForces)?;
         answers.into_iter().try_for_each(|distributed| refuse(distributed, self.clock()))
     }
 
     fn unfit(&self) -> Vec<usize> {
-        let mut unfit = self.look(What::Unfit, opened::<Vec<usize>>).concat();
+        let mut unfit = self.look(RankSample::Unfit, opened::<Vec<usize>>).concat();
         unfit.sort_unstable();
         unfit
     }
 
-    fn settle(&mut self) -> Result<(), Failure> {
+    fn settle(&mut self) -> Result<(), PhysicsFailure> {
         let reports = self.order(Do::Settle)?;
         self.is_to_migrate = true;
         self.heard(reports).map(drop)
@@ -393,9 +396,9 @@ impl Losing for Ranked {
 }
 
 /// Failure of a redistribution of discs.
-fn refuse(distributed: Result<(), String>, at: Clock) -> Result<(), Failure> {
+fn refuse(distributed: Result<(), String>, at: Clock) -> Result<(), PhysicsFailure> {
     distributed.map_err(|why| {
         let what = format!("discs cannot be distributed to the ranks: {why}");
-        Failure::new(FailureKind::MACHINE, what, "report this with the scene").at(at)
+        PhysicsFailure::new(FailureKind::MACHINE, what, "report this with the scene").at(at)
     })
 }

@@ -1,39 +1,39 @@
 //! Assignment of bands to ranks, and the neighbourhood that each rank needs.
 
 use std::ops::Range;
-use stripmine_kernels::sweep::fast::{Rows, Share};
+use stripmine_kernels::sweep::fast::{RankShare, RowLayout};
 
 /// Number of rows that a disc may move before discs are redistributed. No bit depends on it. Pairs found beside rows reach as far as partners are
 /// searched ahead.
-pub(super) fn margin(rows: Rows) -> usize {
+pub(super) fn margin(rows: RowLayout) -> usize {
     rows.ahead.max(2)
 }
 
 /// Distance in rows within which discs matter to a rank: its own discs may have moved by the margin, others too, and partners are found ahead.
-pub(super) fn reach(rows: Rows) -> usize {
+pub(super) fn reach(rows: RowLayout) -> usize {
     2 * margin(rows) + rows.ahead
 }
 
 /// Side of a rank on which a row lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum RankSide {
     Below,
     Above,
 }
 
 /// Bands of each rank: consecutive whole bands, so that sums equal those on one rank.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
-    rows: Rows,
+pub(super) struct BandLayout {
+    rows: RowLayout,
     is_periodic: bool,
     bands: Vec<Range<usize>>,
     /// First band of each rank, and the end.
     first: Vec<usize>,
 }
 
-impl Layout {
+impl BandLayout {
     /// Distributes the bands so that each of `ranks` has about the same weight. A function of the weights alone.
-    pub(super) fn new(rows: Rows, is_periodic: bool, weights: &[u64], ranks: usize) -> Layout {
+    pub(super) fn new(rows: RowLayout, is_periodic: bool, weights: &[u64], ranks: usize) -> BandLayout {
         let bands: Vec<Range<usize>> = rows.bands().collect();
         let all: u64 = weights.iter().sum();
         let (mut first, mut before, mut band) = (vec![0], 0, 0);
@@ -50,7 +50,7 @@ impl Layout {
             first.push(band);
         }
         first.push(bands.len());
-        Layout { rows, is_periodic, bands, first }
+        BandLayout { rows, is_periodic, bands, first }
     }
 
     pub(super) fn band(&self, row: usize) -> usize {
@@ -63,13 +63,13 @@ impl Layout {
     }
 
     /// Rows of a rank.
-    pub(super) fn share(&self, rank: usize) -> Share {
+    pub(super) fn share(&self, rank: usize) -> RankShare {
         let [first, end] = [self.first[rank], self.first[rank + 1]];
-        Share { rows: self.bands[first].start..self.bands[end - 1].end, margin: margin(self.rows) }
+        RankShare { rows: self.bands[first].start..self.bands[end - 1].end, margin: margin(self.rows) }
     }
 
     /// Side of a rank's rows on which a row lies; none if its discs do not matter there.
-    pub(super) fn side(&self, rank: usize, row: usize) -> Option<Side> {
+    pub(super) fn side(&self, rank: usize, row: usize) -> Option<RankSide> {
         let (rows, reach) = (self.share(rank).rows, reach(self.rows));
         if rows.contains(&row) {
             return None;
@@ -81,9 +81,9 @@ impl Layout {
         };
         let is_near = |rows: Option<usize>| rows.is_some_and(|rows| rows <= reach);
         if is_near(up(row, rows.start)) {
-            Some(Side::Below)
+            Some(RankSide::Below)
         } else if is_near(up(rows.end - 1, row)) {
-            Some(Side::Above)
+            Some(RankSide::Above)
         } else {
             None
         }
@@ -104,14 +104,14 @@ mod tests {
     /// Every band has one rank, every rank a band, and no rank has much more than its share.
     #[test]
     fn bands_are_distributed_by_weight() {
-        let rows = Rows { count: 640, ahead: 2, band: 16 };
+        let rows = RowLayout { count: 640, ahead: 2, band: 16 };
         let bands = rows.bands().len() as u64;
         for ranks in [1, 2, 3, 7, 8, 40] {
             for heap in [false, true] {
                 let weights: Vec<u64> =
                     (0..bands).map(|band| if heap && band > 9 { 0 } else { 100 + band }).collect();
-                let layout = Layout::new(rows, true, &weights, ranks);
-                let shares: Vec<Share> = (0..ranks).map(|rank| layout.share(rank)).collect();
+                let layout = BandLayout::new(rows, true, &weights, ranks);
+                let shares: Vec<RankShare> = (0..ranks).map(|rank| layout.share(rank)).collect();
                 assert_eq!((shares[0].rows.start, shares[ranks - 1].rows.end), (0, 640));
                 assert!(shares.windows(2).all(|pair| pair[0].rows.end == pair[1].rows.start));
                 assert!((0..640).all(|row| shares[layout.owner(row)].rows.contains(&row)));
@@ -129,13 +129,13 @@ mod tests {
     /// Sides form a ring if rows are periodic, and a stack if they are not.
     #[test]
     fn nearby_rows_have_one_side() {
-        let rows = Rows { count: 64, ahead: 2, band: 16 };
+        let rows = RowLayout { count: 64, ahead: 2, band: 16 };
         for is_periodic in [true, false] {
-            let layout = Layout::new(rows, is_periodic, &[1; 4], 4);
+            let layout = BandLayout::new(rows, is_periodic, &[1; 4], 4);
             let side = |row| layout.side(0, row);
             assert_eq!((side(0), side(15)), (None, None));
-            assert_eq!((side(16), side(21), side(22)), (Some(Side::Above), Some(Side::Above), None));
-            let below = is_periodic.then_some(Side::Below);
+            assert_eq!((side(16), side(21), side(22)), (Some(RankSide::Above), Some(RankSide::Above), None));
+            let below = is_periodic.then_some(RankSide::Below);
             assert_eq!((side(63), side(58), side(57)), (below, below, None));
         }
     }

@@ -19,13 +19,13 @@ mod orders;
 mod wire;
 mod worker;
 
-use super::search::Search;
-use super::{Compiled, Dynamics, Engine, Losing, System};
-use crate::method::{Clock, Failure, ended};
+use super::search::PairSearch;
+use super::{CompiledDynamics, Dynamics, PairEngine, PairSystem, RemovableDiscs};
+use crate::method::{Clock, PhysicsFailure, ended};
 use crate::particles::Particles;
-use crate::ranks::{self, Crew};
-use dealt::Scene;
-use first::{Ranked, Threads};
+use crate::ranks::{self, RankBackend};
+use dealt::RankedScene;
+use first::{FirstRank, RankThreads};
 use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
@@ -35,33 +35,35 @@ use stripmine_kernels::backend::Precision;
 /// # Errors
 /// As [`Engine::new`], or if the scene has fewer bands than there are ranks.
 pub(crate) fn begin<S, P, Q, D>(
-    (dynamics, system, set): (D, System, InstructionSet),
+    (dynamics, system, set): (D, PairSystem, InstructionSet),
     search: Q,
     particles: Particles,
-) -> Result<Box<dyn Losing>, Failure>
+) -> Result<Box<dyn RemovableDiscs>, PhysicsFailure>
 where
     S: Precision,
     P: Precision,
-    Q: Search<S, P> + 'static,
+    Q: PairSearch<S, P> + 'static,
     D: Dynamics + 'static,
 {
-    let dynamics: Arc<dyn Compiled<S, P, Q>> = Arc::new(dynamics);
+    let dynamics: Arc<dyn CompiledDynamics<S, P, Q>> = Arc::new(dynamics);
     let crew = ranks::crew();
     if crew.count() == 1 {
-        return Ok(Box::new(Engine::new(dynamics, system, search, set, particles)?));
+        return Ok(Box::new(PairEngine::new(dynamics, system, search, set, particles)?));
     }
-    let scene = Scene { dynamics, system, set, search };
+    let scene = RankedScene { dynamics, system, set, search };
     scene.refuse_too_many(crew.count())?;
-    let stepping: Box<dyn Losing> = match crew {
-        Crew::Processes(join) if join().rank() > 0 => return Err(scene.serve(join, particles)),
-        Crew::Processes(join) => {
+    let stepping: Box<dyn RemovableDiscs> = match crew {
+        RankBackend::Processes(join) if join().rank() > 0 => return Err(scene.serve(join, particles)),
+        RankBackend::Processes(join) => {
             let ranks = join();
             let ids: Vec<u32> = particles.all().iter().map(|particle| particle.id).collect();
             let told = ranks.tell_message(Some(Some(ids)));
             told.map_err(|lost| ended(lost, Clock::default()))?;
-            Box::new(Ranked::of(ranks, Threads(vec![]), |ranks| scene.part(ranks, Arc::new(particles)))?)
+            Box::new(FirstRank::of(ranks, RankThreads(vec![]), |ranks| {
+                scene.part(ranks, Arc::new(particles))
+            })?)
         }
-        Crew::One | Crew::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
+        RankBackend::One | RankBackend::Threads(_) => Box::new(scene.on_threads(crew.count(), particles)?),
     };
     Ok(stepping)
 }

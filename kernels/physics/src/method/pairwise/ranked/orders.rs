@@ -1,9 +1,9 @@
 //! Execution of the first rank's orders on each rank.
 
-use super::wire::{Columns, Do, ForcesReport, Order, What};
-use super::worker::{Part, Worker};
-use crate::method::pairwise::search::Search;
-use crate::method::pairwise::{Named, Prescribed, Stepping};
+use super::wire::{Do, ForcesReport, NamedColumns, RankOrder, RankSample};
+use super::worker::{RankPart, RankWorker};
+use crate::method::pairwise::search::PairSearch;
+use crate::method::pairwise::{NameableDiscs, PrescribedMotion, SteppingDiscs};
 use crate::ranks::{Parcel, RankError, Ranks};
 use stripmine_kernels::backend::Precision;
 
@@ -11,9 +11,9 @@ use stripmine_kernels::backend::Precision;
 ///
 /// # Errors
 /// [`RankError`]: a rank was lost, which is reported to the first rank, or the first rank has ended.
-pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
+pub(super) fn serve(mut part: Box<dyn RankPart>) -> Result<(), RankError> {
     loop {
-        let order = part.ranks().tell_message::<Option<Order>>(None);
+        let order = part.ranks().tell_message::<Option<RankOrder>>(None);
         match order.and_then(|order| order.map(|order| part.follow(order)).transpose()) {
             Ok(None) => return Ok(()),
             Ok(Some(own)) => part.ranks().gather(own)?,
@@ -29,29 +29,29 @@ pub(super) fn serve(mut part: Box<dyn Part>) -> Result<(), RankError> {
     }
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Part for Worker<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankPart for RankWorker<S, P, Q> {
     fn ranks(&self) -> &dyn Ranks {
         self.ranks.as_ref()
     }
 
-    fn engine(&self) -> &dyn Stepping {
+    fn engine(&self) -> &dyn SteppingDiscs {
         &self.engine
     }
 
-    fn engine_mut(&mut self) -> &mut dyn Stepping {
+    fn engine_mut(&mut self) -> &mut dyn SteppingDiscs {
         &mut self.engine
     }
 
-    fn prescribed(&self) -> Option<Prescribed> {
+    fn prescribed(&self) -> Option<PrescribedMotion> {
         self.engine.prescribed()
     }
 
-    fn columns(&self) -> [Columns; 2] {
+    fn columns(&self) -> [NamedColumns; 2] {
         [self.engine.columns_of(&[]), self.engine.columns_of_all().collect()]
     }
 
-    fn follow(&mut self, order: Order) -> Result<Parcel, RankError> {
-        let Order { crossed, is_to_migrate, what } = order;
+    fn follow(&mut self, order: RankOrder) -> Result<Parcel, RankError> {
+        let RankOrder { crossed, is_to_migrate, what } = order;
         self.hear_of_crossings(&crossed);
         let distributed = if is_to_migrate { self.migrate()? } else { Ok(()) };
         Ok(match what {
@@ -67,15 +67,15 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Part for Worker<S, P, Q> {
         })
     }
 
-    fn look(&self, what: What) -> Result<Parcel, RankError> {
+    fn look(&self, what: RankSample) -> Result<Parcel, RankError> {
         Ok(match what {
-            What::Standing => self.standing(),
-            What::Column(place) => self.column(place),
-            What::Forces => self.each_own(|disc| self.engine.force_on(disc)),
-            What::Velocities => self.each_own(|disc| self.engine.velocity(disc)),
-            What::Contacts => Parcel::of(&self.contacts()?),
-            What::Listed => Parcel::of(&self.listed()),
-            What::Unfit => Parcel::of(&self.unfit()),
+            RankSample::Standing => self.standing(),
+            RankSample::Column(place) => self.column(place),
+            RankSample::Forces => self.each_own(|disc| self.engine.force_on(disc)),
+            RankSample::Velocities => self.each_own(|disc| self.engine.velocity(disc)),
+            RankSample::Contacts => Parcel::of(&self.contacts()?),
+            RankSample::Listed => Parcel::of(&self.listed()),
+            RankSample::Unfit => Parcel::of(&self.unfit()),
         })
     }
 }

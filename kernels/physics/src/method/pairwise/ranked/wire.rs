@@ -1,23 +1,23 @@
 //! Messages between ranks that step discs.
 
-use crate::io::checkpoint::Column;
-use crate::method::Failure;
+use crate::io::checkpoint::CheckpointColumn;
+use crate::method::PhysicsFailure;
 use crate::ranks::{Parcel, RankError, numbers};
 use serde::{Deserialize, Serialize};
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::OfBand;
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::sweep::fast::BandReport;
 
 /// Columns by name.
-pub(super) type Columns = Vec<(String, Column)>;
+pub(super) type NamedColumns = Vec<(String, CheckpointColumn)>;
 
 /// Disc with the periods that it has crossed.
-pub(super) type Crossed = (usize, [f64; 2]);
+pub(super) type CrossedPeriods = (usize, [f64; 2]);
 
 /// Order of the first rank to all ranks. None ends the simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Order {
+pub(super) struct RankOrder {
     /// Discs that have crossed periods, with the ranks that reported them.
-    pub(super) crossed: Vec<(usize, Crossed)>,
+    pub(super) crossed: Vec<(usize, CrossedPeriods)>,
     /// True if discs are redistributed first.
     pub(super) is_to_migrate: bool,
     pub(super) what: Do,
@@ -26,16 +26,16 @@ pub(super) struct Order {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Do {
     Advance,
-    Forces(Asked),
+    Forces(ObservationRequest),
     SkipForces,
-    Look(What),
+    Look(RankSample),
     Settle,
-    Restore { steps: u64, columns: Columns },
+    Restore { steps: u64, columns: NamedColumns },
 }
 
 /// Sample that a rank takes; it changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum What {
+pub(super) enum RankSample {
     /// Position, angle and their rates of each disc at the end of the step.
     Standing,
     /// Column of the state by its index. With all columns at once, the first rank would hold them three times.
@@ -52,20 +52,20 @@ pub(super) enum What {
     Unfit,
 }
 
-impl From<Do> for Order {
+impl From<Do> for RankOrder {
     /// Order without news.
-    fn from(what: Do) -> Order {
-        Order { crossed: vec![], is_to_migrate: false, what }
+    fn from(what: Do) -> RankOrder {
+        RankOrder { crossed: vec![], is_to_migrate: false, what }
     }
 }
 
 /// Report of a rank after a step: its failure and the discs that the first rank needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct StepReport {
-    pub(super) failure: Option<Failure>,
+    pub(super) failure: Option<PhysicsFailure>,
     /// Discs that moved far.
-    pub(super) far: Vec<Record>,
-    pub(super) crossed: Vec<Crossed>,
+    pub(super) far: Vec<DiscRecord>,
+    pub(super) crossed: Vec<CrossedPeriods>,
     /// True if a disc has moved farther than the margin.
     pub(super) has_strayed: bool,
     pub(super) shared_cells: usize,
@@ -76,14 +76,14 @@ pub(super) struct StepReport {
 pub(super) struct ForcesReport {
     /// Result of the redistribution, or the reason why it failed.
     pub(super) distributed: Result<(), String>,
-    pub(super) failure: Option<Failure>,
-    pub(super) bands: Vec<OfBand>,
-    pub(super) deep: Vec<[Record; 2]>,
+    pub(super) failure: Option<PhysicsFailure>,
+    pub(super) bands: Vec<BandReport>,
+    pub(super) deep: Vec<[DiscRecord; 2]>,
 }
 
 /// Description of a disc for failures and checks on other ranks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Record {
+pub(super) struct DiscRecord {
     pub(super) number: usize,
     pub(super) is_grain: bool,
     pub(super) id: u32,
@@ -111,22 +111,28 @@ pub(super) fn put_own<const N: usize>(
 }
 
 /// Returns the entries of a column as doubles. Counts are below 2⁵³.
-pub(super) fn entries(column: &Column) -> Vec<f64> {
+pub(super) fn entries(column: &CheckpointColumn) -> Vec<f64> {
     match column {
-        Column::F64(values) => values.clone(),
-        Column::F32(values) => values.iter().map(|&value| value.into()).collect(),
-        Column::U32(values) => values.iter().map(|&value| value.into()).collect(),
-        Column::U64(values) => values.iter().map(|&value| value as f64).collect(),
+        CheckpointColumn::F64(values) => values.clone(),
+        CheckpointColumn::F32(values) => values.iter().map(|&value| value.into()).collect(),
+        CheckpointColumn::U32(values) => values.iter().map(|&value| value.into()).collect(),
+        CheckpointColumn::U64(values) => values.iter().map(|&value| value as f64).collect(),
     }
 }
 
 /// Builds a column of the same type as another one.
-pub(super) fn column_like(like: &Column, values: Vec<f64>) -> Column {
+pub(super) fn column_like(like: &CheckpointColumn, values: Vec<f64>) -> CheckpointColumn {
     match like {
-        Column::F64(_) => Column::F64(values),
-        Column::F32(_) => Column::F32(values.into_iter().map(|value| value as f32).collect()),
-        Column::U32(_) => Column::U32(values.into_iter().map(|value| value as u32).collect()),
-        Column::U64(_) => Column::U64(values.into_iter().map(|value| value as u64).collect()),
+        CheckpointColumn::F64(_) => CheckpointColumn::F64(values),
+        CheckpointColumn::F32(_) => {
+            CheckpointColumn::F32(values.into_iter().map(|value| value as f32).collect())
+        }
+        CheckpointColumn::U32(_) => {
+            CheckpointColumn::U32(values.into_iter().map(|value| value as u32).collect())
+        }
+        CheckpointColumn::U64(_) => {
+            CheckpointColumn::U64(values.into_iter().map(|value| value as u64).collect())
+        }
     }
 }
 
@@ -152,9 +158,9 @@ mod tests {
         prop::array::uniform3(number())
     }
 
-    fn record() -> impl Strategy<Value = Record> {
+    fn record() -> impl Strategy<Value = DiscRecord> {
         (any::<usize>(), any::<bool>(), any::<u32>(), pair(), pair(), number()).prop_map(
-            |(number, is_grain, id, position, velocity, radius)| Record {
+            |(number, is_grain, id, position, velocity, radius)| DiscRecord {
                 number,
                 is_grain,
                 id,
@@ -165,7 +171,7 @@ mod tests {
         )
     }
 
-    fn failure() -> impl Strategy<Value = Option<Failure>> {
+    fn failure() -> impl Strategy<Value = Option<PhysicsFailure>> {
         let clock = (any::<u64>(), number(), any::<u64>());
         let clock = prop::option::of(clock.prop_map(|(steps, time, events)| Clock { steps, time, events }));
         let name = || prop::sample::select(vec!["disc", "body", "not-finite"]);
@@ -174,42 +180,40 @@ mod tests {
         let (culprits, values) =
             (prop::collection::vec(culprit, 0..3), prop::collection::vec((name(), number()), 0..3));
         let sent = (name(), clock, culprits, any::<u64>(), values, any::<[String; 2]>());
-        prop::option::of(sent.prop_map(|(kind, at, culprits, count, values, [message, remedy])| Failure {
-            kind: FailureKind::new(kind),
-            at,
-            culprits,
-            count,
-            values,
-            message,
-            remedy,
+        prop::option::of(sent.prop_map(|(kind, at, culprits, count, values, [message, remedy])| {
+            PhysicsFailure { kind: FailureKind::new(kind), at, culprits, count, values, message, remedy }
         }))
     }
 
-    fn crossed() -> impl Strategy<Value = Crossed> {
+    fn crossed() -> impl Strategy<Value = CrossedPeriods> {
         (any::<usize>(), pair())
     }
 
-    fn column() -> impl Strategy<Value = Column> {
+    fn column() -> impl Strategy<Value = CheckpointColumn> {
         use prop::collection::vec;
         prop_oneof![
-            vec(number(), 0..5).prop_map(Column::F64),
-            vec(any::<u32>().prop_map(f32::from_bits), 0..5).prop_map(Column::F32),
-            any::<Vec<u32>>().prop_map(Column::U32),
-            any::<Vec<u64>>().prop_map(Column::U64),
+            vec(number(), 0..5).prop_map(CheckpointColumn::F64),
+            vec(any::<u32>().prop_map(f32::from_bits), 0..5).prop_map(CheckpointColumn::F32),
+            any::<Vec<u32>>().prop_map(CheckpointColumn::U32),
+            any::<Vec<u64>>().prop_map(CheckpointColumn::U64),
         ]
     }
 
     fn what() -> impl Strategy<Value = Do> {
         let asked = (prop::option::of(number()), any::<bool>(), any::<bool>());
-        let asked = asked.prop_map(|(watched, dissipation, energy)| Asked { watched, dissipation, energy });
+        let asked = asked.prop_map(|(watched, dissipation, energy)| ObservationRequest {
+            watched,
+            dissipation,
+            energy,
+        });
         let look = prop_oneof![
-            Just(What::Standing),
-            any::<usize>().prop_map(What::Column),
-            Just(What::Forces),
-            Just(What::Velocities),
-            Just(What::Contacts),
-            Just(What::Listed),
-            Just(What::Unfit),
+            Just(RankSample::Standing),
+            any::<usize>().prop_map(RankSample::Column),
+            Just(RankSample::Forces),
+            Just(RankSample::Velocities),
+            Just(RankSample::Contacts),
+            Just(RankSample::Listed),
+            Just(RankSample::Unfit),
         ];
         let columns = prop::collection::vec((any::<String>(), column()), 0..3);
         prop_oneof![
@@ -222,9 +226,9 @@ mod tests {
         ]
     }
 
-    fn band() -> impl Strategy<Value = OfBand> {
+    fn band() -> impl Strategy<Value = BandReport> {
         (any::<u64>(), number(), pair(), any::<u64>(), number()).prop_map(
-            |(pairs, dissipated, energy, contacts, deepest)| OfBand {
+            |(pairs, dissipated, energy, contacts, deepest)| BandReport {
                 pairs,
                 dissipated,
                 energy,
@@ -255,7 +259,7 @@ mod tests {
             distributed: Result<(), String>,
             bands in prop::collection::vec(band(), 0..3),
         ) {
-            let order = Order { crossed, is_to_migrate, what };
+            let order = RankOrder { crossed, is_to_migrate, what };
             let crossed = order.crossed.iter().map(|it| it.1).collect();
             returns(&Some(order));
             returns(&StepReport {

@@ -8,13 +8,15 @@
 //! for that, and when one has moved farther, all ranks redistribute their discs. Neighbours' discs receive positions and velocities from their own
 //! rank at every step, and then change cells as they do there.
 
-use super::layout::Layout;
-use super::wire::{Columns, Crossed, ForcesReport, Order, Record, StepReport, What, entries};
-use crate::method::Failure;
-use crate::method::pairwise::cells::Moved;
-use crate::method::pairwise::observing::Corrected;
-use crate::method::pairwise::search::{Cells, Search};
-use crate::method::pairwise::{Engine, Named, Phase, Prescribed, Stepping};
+use super::layout::BandLayout;
+use super::wire::{
+    CrossedPeriods, DiscRecord, ForcesReport, NamedColumns, RankOrder, RankSample, StepReport, entries,
+};
+use crate::method::PhysicsFailure;
+use crate::method::pairwise::cells::CellChange;
+use crate::method::pairwise::observing::CorrectedDiscs;
+use crate::method::pairwise::search::{PairSearch, SearchCells};
+use crate::method::pairwise::{NameableDiscs, PairEngine, Phase, PrescribedMotion, SteppingDiscs};
 use crate::ranks::{Parcel, RankError, Ranks, numbers};
 use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
@@ -22,41 +24,41 @@ use std::ops::Range;
 use std::time::Instant;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Element, ProgramError};
-use stripmine_kernels::law::Asked;
-use stripmine_kernels::sweep::fast::{OfBand, Passed, Rows, Share};
+use stripmine_kernels::law::ObservationRequest;
+use stripmine_kernels::sweep::fast::{BandReport, PassReport, RankShare, RowLayout};
 
 /// Part of a rank, or its failure with the rank that must report it.
-pub(super) type Begun = Result<Box<dyn Part>, (Box<dyn Ranks>, Failure)>;
+pub(super) type PartStart = Result<Box<dyn RankPart>, (Box<dyn Ranks>, PhysicsFailure)>;
 
 /// Part of a rank, independent of precision and search.
-pub(super) trait Part: Send {
+pub(super) trait RankPart: Send {
     /// Connection to the other ranks.
     fn ranks(&self) -> &dyn Ranks;
 
     /// Engine with its discs.
-    fn engine(&self) -> &dyn Stepping;
+    fn engine(&self) -> &dyn SteppingDiscs;
 
     /// Mutable access to the engine.
-    fn engine_mut(&mut self) -> &mut dyn Stepping;
+    fn engine_mut(&mut self) -> &mut dyn SteppingDiscs;
 
     /// Prescribed motion of discs that no force moves, if they move.
-    fn prescribed(&self) -> Option<Prescribed>;
+    fn prescribed(&self) -> Option<PrescribedMotion>;
 
     /// Columns of values of each disc, without entries, and columns shared by all discs.
-    fn columns(&self) -> [Columns; 2];
+    fn columns(&self) -> [NamedColumns; 2];
 
     /// Executes an order; returns this rank's answer for the first rank.
-    fn follow(&mut self, order: Order) -> Result<Parcel, RankError>;
+    fn follow(&mut self, order: RankOrder) -> Result<Parcel, RankError>;
 
     /// Takes a sample for the first rank.
-    fn look(&self, what: What) -> Result<Parcel, RankError>;
+    fn look(&self, what: RankSample) -> Result<Parcel, RankError>;
 }
 
 /// Part of a rank with an engine of some precisions and search.
-pub(super) struct Worker<S, P, Q> {
+pub(super) struct RankWorker<S, P, Q> {
     pub(super) ranks: Box<dyn Ranks>,
-    pub(super) engine: Engine<S, P, Q>,
-    pub(super) layout: Layout,
+    pub(super) engine: PairEngine<S, P, Q>,
+    pub(super) layout: BandLayout,
     /// Discs by their numbers in the scene, rising: those sent to the ranks below and above, and those received from them.
     pub(super) to: [Vec<u32>; 2],
     pub(super) from: [Vec<u32>; 2],
@@ -70,20 +72,20 @@ pub(super) struct Worker<S, P, Q> {
     pub(super) homes: HashMap<u32, usize>,
 }
 
-impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     /// Takes its part of the start; `engine` has no discs yet.
     ///
     /// # Errors
     /// Returns the failure, with the connection needed to report it.
     pub(super) fn new(
         ranks: Box<dyn Ranks>,
-        engine: Engine<S, P, Q>,
-    ) -> Result<Self, (Box<dyn Ranks>, Failure)> {
+        engine: PairEngine<S, P, Q>,
+    ) -> Result<Self, (Box<dyn Ranks>, PhysicsFailure)> {
         let rows = engine.search.rows();
         let is_periodic = engine.search.cells().grid().periodic[1];
-        let layout = Layout::new(rows, is_periodic, &vec![1; rows.bands().len()], ranks.count());
+        let layout = BandLayout::new(rows, is_periodic, &vec![1; rows.bands().len()], ranks.count());
         let none = || [vec![], vec![]];
-        let mut worker = Worker {
+        let mut worker = RankWorker {
             ranks,
             engine,
             layout,
@@ -158,34 +160,34 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Updates cells or lists after a step: all ranks rebuild their lists, or none.
-    fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<Moved>, Failure>, RankError> {
+    fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<CellChange>, PhysicsFailure>, RankError> {
         if self.engine.search.lists().is_none() {
             return Ok(self.engine.keep_in_cells(left));
         }
         let stale = self.engine.is_stale(left);
         let own = match stale {
-            Ok(false) => Lists::Fresh,
-            Ok(true) => Lists::Stale,
-            Err(_) => Lists::Failed,
+            Ok(false) => ListState::Fresh,
+            Ok(true) => ListState::Stale,
+            Err(_) => ListState::Failed,
         };
         let all = self.ranks.gather_messages(own)?;
         let said = self.ranks.tell_message(all.into_iter().max())?;
         Ok(match stale {
             Err(failure) => Err(failure),
-            Ok(_) if said == Lists::Stale => self.engine.list_again(),
+            Ok(_) if said == ListState::Stale => self.engine.list_again(),
             Ok(_) => Ok(vec![]),
         })
     }
 
     /// Reports discs that changed cells and discs that moved far.
-    fn report(&mut self, moved: Result<Vec<Moved>, Failure>, far: &[u32]) -> StepReport {
+    fn report(&mut self, moved: Result<Vec<CellChange>, PhysicsFailure>, far: &[u32]) -> StepReport {
         let (moved, failure) = moved.map_or_else(|failure| (vec![], Some(failure)), |moved| (moved, None));
         // Crossings of walls are not counted.
         let grains = self.engine.start.grain_count();
-        let crosses = |it: &&Moved| it.periods != [0.0; 2] && (it.number as usize) < grains;
+        let crosses = |it: &&CellChange| it.periods != [0.0; 2] && (it.number as usize) < grains;
         let crossed = moved.iter().filter(crosses).map(|it| (it.number as usize, it.periods)).collect();
         let mut has_strayed = false;
-        for &Moved { number, rows: [from, to], .. } in &moved {
+        for &CellChange { number, rows: [from, to], .. } in &moved {
             let home = *self.homes.entry(number).or_insert(from);
             has_strayed |= self.layout.has_strayed(home, to);
         }
@@ -199,9 +201,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Describes a disc for other ranks.
-    fn record(&self, disc: u32) -> Record {
+    fn record(&self, disc: u32) -> DiscRecord {
         let (engine, disc) = (&self.engine, disc as usize);
-        Record {
+        DiscRecord {
             number: engine.number(disc),
             is_grain: disc < engine.state.grains(),
             id: engine.id(disc),
@@ -228,9 +230,9 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Advances the discs by one step, first those that neighbours need: the others advance while these messages are sent.
-    fn pass(&mut self) -> Result<Result<Passed, ProgramError>, RankError> {
+    fn pass(&mut self) -> Result<Result<PassReport, ProgramError>, RankError> {
         debug_assert_eq!(self.ordered, self.engine.orders, "indices of discs in memory are out of date");
-        let Worker { ranks, engine, .. } = self;
+        let RankWorker { ranks, engine, .. } = self;
         let moving = engine.state.moving();
         let inner = self.inner.clone();
         let outer = [0..inner.start, inner.end..moving].map(|discs| engine.pass(discs));
@@ -242,7 +244,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
         let begun = Instant::now();
         let parcels = self.to_in_memory.each_ref().map(|discs| of_discs(engine.state.swept(), discs));
         parcels.iter().for_each(|parcel| engine.elapsed.timings.sent(parcel.0.len() as u64));
-        let (mut between, mut hidden) = (Ok(Passed::default()), 0.0);
+        let (mut between, mut hidden) = (Ok(PassReport::default()), 0.0);
         let heard = ranks.halo(parcels, &mut || {
             let begun = Instant::now();
             between = engine.pass(inner.clone());
@@ -261,7 +263,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Computes all forces; returns the report for the first rank.
-    pub(super) fn compute_forces(&mut self, asked: Asked) -> ForcesReport {
+    pub(super) fn compute_forces(&mut self, asked: ObservationRequest) -> ForcesReport {
         let met = self.engine.compute_forces(asked);
         let (met, failure) =
             met.map_or_else(|failure| (Default::default(), Some(failure)), |met| (met, None));
@@ -310,7 +312,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Sweeps its bands at the end of the step.
-    pub(super) fn contacts(&self) -> Result<Vec<OfBand>, RankError> {
+    pub(super) fn contacts(&self) -> Result<Vec<BandReport>, RankError> {
         debug_assert_eq!(self.ordered, self.engine.orders, "indices of discs in memory are out of date");
         let mut corrected = self.engine.corrected_discs();
         let parcels = self
@@ -332,7 +334,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
     }
 
     /// Adds the periods that discs of other ranks have crossed. The first rank knows them from their reports.
-    pub(super) fn hear_of_crossings(&mut self, crossed: &[(usize, Crossed)]) {
+    pub(super) fn hear_of_crossings(&mut self, crossed: &[(usize, CrossedPeriods)]) {
         let own = self.ranks.rank();
         for &(rank, (number, periods)) in crossed {
             if own > 0 && rank != own {
@@ -344,7 +346,7 @@ impl<S: Precision, P: Precision, Q: Search<S, P>> Worker<S, P, Q> {
 
 /// State of the lists after a step. The largest reported by any rank applies to all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-enum Lists {
+enum ListState {
     Fresh,
     Stale,
     Failed,
@@ -379,13 +381,13 @@ fn inner_of(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
 }
 
 /// Columns of corrected discs that a sweep reads.
-fn of_corrected(corrected: &mut Corrected) -> Vec<&mut [f64]> {
-    let Corrected { place, velocity, omega, .. } = corrected;
+fn of_corrected(corrected: &mut CorrectedDiscs) -> Vec<&mut [f64]> {
+    let CorrectedDiscs { place, velocity, omega, .. } = corrected;
     let columns = place.iter_mut().chain(velocity).chain([omega]).filter(|column| !column.is_empty());
     columns.map(Vec::as_mut_slice).collect()
 }
 
 /// Share of all rows, for a search without discs.
-pub(super) fn all_rows(rows: Rows) -> Share {
-    Share { rows: 0..rows.count, margin: 0 }
+pub(super) fn all_rows(rows: RowLayout) -> RankShare {
+    RankShare { rows: 0..rows.count, margin: 0 }
 }

@@ -1,15 +1,17 @@
 //! Pair search on a lattice with at most one disc a cell.
 
-use super::{Cells, Search, observed, rows};
-use crate::method::pairwise::state::{Move, State};
+use super::{PairSearch, SearchCells, observed, rows};
+use crate::method::pairwise::state::{CellMove, MovingDiscs};
 use crate::words::define_words;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::{Asked, Law};
-use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy, Taken};
-use stripmine_kernels::sweep::fast::{Copies, Discs, DisplacementLimit, Grid, Met, Rows, Share, Sweep};
-use stripmine_kernels::sweep::lattice::{Frame, LatticeShape};
+use stripmine_kernels::law::{Law, ObservationRequest};
+use stripmine_kernels::sweep::fast::lattice::{Candidates, CellTaken, Codes, Lattice, Occupancy};
+use stripmine_kernels::sweep::fast::{
+    CellGrid, DiscColumns, DisplacementLimit, PositionCopies, RankShare, RowLayout, Sweep, SweepReport,
+};
+use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
 define_words! {
     /// Action for a disc in an occupied lattice cell.
@@ -27,8 +29,8 @@ pub(crate) struct LatticeCells {
     on_conflict: OnConflict,
 }
 
-impl<S: Precision> Cells<S> for LatticeCells {
-    fn grid(&self) -> Grid {
+impl<S: Precision> SearchCells<S> for LatticeCells {
+    fn grid(&self) -> CellGrid {
         self.occupancy.grid()
     }
 
@@ -40,11 +42,11 @@ impl<S: Precision> Cells<S> for LatticeCells {
         self.occupancy.leave(disc);
     }
 
-    fn enter(&mut self, to: &Move, state: &State<S>) -> Result<(), Taken> {
-        let Move { disc, cell, place, .. } = *to;
+    fn enter(&mut self, to: &CellMove, state: &MovingDiscs<S>) -> Result<(), CellTaken> {
+        let CellMove { disc, cell, place, .. } = *to;
         let occupancy = &mut self.occupancy;
         let entered = occupancy.enter(disc, cell, place, state.radius(disc));
-        let Err(Taken(owner)) = entered else { return Ok(()) };
+        let Err(CellTaken(owner)) = entered else { return Ok(()) };
         if self.on_conflict == OnConflict::Stop {
             return entered;
         }
@@ -63,7 +65,7 @@ impl<S: Precision> Cells<S> for LatticeCells {
         self.occupancy.settle(disc, place);
     }
 
-    fn arrange(&mut self, state: &State<S>) {
+    fn arrange(&mut self, state: &MovingDiscs<S>) {
         let occupancy = &mut self.occupancy;
         // Discs that shared the cell of a departed disc now own it.
         for (disc, cell) in occupancy.shared_cells().to_vec() {
@@ -103,7 +105,7 @@ pub(crate) struct LatticeSearch<P> {
     cells: LatticeCells,
     codes: Codes<P>,
     sweep: Sweep<Candidates>,
-    share: Option<Share>,
+    share: Option<RankShare>,
     /// Smallest radius (length).
     smallest: f64,
 }
@@ -112,7 +114,7 @@ impl<P: Precision> LatticeSearch<P> {
     /// Creates an empty lattice for as many discs as there are radii (length).
     pub(crate) fn new<S: Precision>(
         shape: LatticeShape,
-        frame: Frame,
+        frame: LatticeFrame,
         on_conflict: OnConflict,
         radii: impl ExactSizeIterator<Item = f64> + Clone,
     ) -> Self {
@@ -129,10 +131,10 @@ impl<P: Precision> LatticeSearch<P> {
     }
 }
 
-impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
+impl<S: Precision, P: Precision> PairSearch<S, P> for LatticeSearch<P> {
     type Cells = LatticeCells;
 
-    fn emptied(&self, discs: usize, share: Share) -> Self {
+    fn emptied(&self, discs: usize, share: RankShare) -> Self {
         let occupancy = self.cells.occupancy.emptied(discs);
         let codes = Codes::new(&occupancy, occupancy.grid().frame);
         let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
@@ -141,7 +143,7 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
         LatticeSearch { cells, codes, sweep, share: Some(share), smallest: self.smallest }
     }
 
-    fn rows(&self) -> Rows {
+    fn rows(&self) -> RowLayout {
         rows::<S, P, _>(&Lattice { occupancy: &self.cells.occupancy, codes: &self.codes, slack: 0.0 })
     }
 
@@ -153,7 +155,7 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
         &mut self.cells
     }
 
-    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<PositionCopies<'_>>) {
         let occupancy = &mut self.cells.occupancy;
         (DisplacementLimit::Cell(occupancy.grid().frame.edge), occupancy.copies())
     }
@@ -161,11 +163,11 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &Discs<'_, S>,
+        discs: &DiscColumns<'_, S>,
         sums: [&mut [P]; 3],
-        asked: Asked,
+        asked: ObservationRequest,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         let LatticeSearch { cells: LatticeCells { occupancy, .. }, codes, sweep, .. } = self;
         sweep.run(law, &Lattice { occupancy, codes, slack: 0.0 }, discs, sums, asked, set)
     }
@@ -173,10 +175,10 @@ impl<S: Precision, P: Precision> Search<S, P> for LatticeSearch<P> {
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &Discs<'_, f64>,
+        discs: &DiscColumns<'_, f64>,
         moved: f64,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         let occupancy = &self.cells.occupancy;
         let codes = Codes::new(occupancy, occupancy.grid().frame);
         // Both discs of a pair may have come nearer; no contact distance is below two smallest radii.

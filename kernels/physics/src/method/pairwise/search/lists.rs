@@ -1,29 +1,30 @@
 //! Pair search by Verlet lists, rebuilt whenever a disc has moved half the skin.
 
-use super::{Search, observed, rows};
-use crate::method::pairwise::state::State;
+use super::{PairSearch, observed, rows};
+use crate::method::pairwise::state::MovingDiscs;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::in_pieces;
 use stripmine_kernels::isa::{AlignedColumn, ProgramError};
-use stripmine_kernels::law::{Asked, Law};
+use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::sweep::fast::{
-    Copies, Discs, DisplacementLimit, Grid, Met, Rows, Sectors, Share, Sweep, Touches, VerletList,
+    CellGrid, DiscColumns, DisplacementLimit, PairBuffer, PositionCopies, RankShare, RowLayout, Sectors,
+    Sweep, SweepReport, VerletList,
 };
 
 /// Verlet lists, and the sectors of the discs when they were built.
 pub(crate) struct ListSearch<S, P> {
     sectors: Sectors,
-    sweep: Sweep<Touches<P>>,
-    share: Option<Share>,
-    listed: Listed<S>,
+    sweep: Sweep<PairBuffer<P>>,
+    share: Option<RankShare>,
+    listed: ListedPairs<S>,
 }
 
 /// First alignment number of the positions at the build; columns of the state and sums have smaller ones.
 const MADE_AT: usize = 28;
 
 /// Lists with the positions at which they were built.
-pub(crate) struct Listed<S> {
+pub(crate) struct ListedPairs<S> {
     list: Option<VerletList>,
     skin: f64,
     /// Positions when the lists were built.
@@ -34,26 +35,26 @@ pub(crate) struct Listed<S> {
 impl<S: Precision, P: Precision> ListSearch<S, P> {
     /// Creates a search without lists, for `discs` discs whose pairs act up to a distance `reach` (length). Listed pairs may be farther apart by
     /// `skin` (length); sectors are wide enough for both.
-    pub(crate) fn new(grid: Grid, discs: usize, reach: f64, skin: f64) -> Self {
+    pub(crate) fn new(grid: CellGrid, discs: usize, reach: f64, skin: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
-        let listed = Listed { list: None, skin, made_at: Default::default(), made: 0 };
+        let listed = ListedPairs { list: None, skin, made_at: Default::default(), made: 0 };
         ListSearch { sectors, sweep, share: None, listed }
     }
 }
 
-impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
+impl<S: Precision, P: Precision> PairSearch<S, P> for ListSearch<S, P> {
     type Cells = Sectors;
 
-    fn emptied(&self, discs: usize, share: Share) -> Self {
+    fn emptied(&self, discs: usize, share: RankShare) -> Self {
         let sectors = self.sectors.emptied(discs);
         let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
-        let Listed { skin, made, .. } = self.listed;
-        let listed = Listed { list: None, skin, made_at: Default::default(), made };
+        let ListedPairs { skin, made, .. } = self.listed;
+        let listed = ListedPairs { list: None, skin, made_at: Default::default(), made };
         ListSearch { sectors, sweep, share: Some(share), listed }
     }
 
-    fn rows(&self) -> Rows {
+    fn rows(&self) -> RowLayout {
         rows::<S, P, _>(&self.sectors)
     }
 
@@ -65,7 +66,7 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
         &mut self.sectors
     }
 
-    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<PositionCopies<'_>>) {
         let [x, y] = &self.listed.made_at;
         (DisplacementLimit::From { places: [x, y], distance: 0.5 * self.listed.skin }, None)
     }
@@ -73,31 +74,31 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &Discs<'_, S>,
+        discs: &DiscColumns<'_, S>,
         sums: [&mut [P]; 3],
-        asked: Asked,
+        asked: ObservationRequest,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         match &self.listed.list {
             Some(list) => self.sweep.run(law, list, discs, sums, asked, set),
-            None => Ok(Met::default()),
+            None => Ok(SweepReport::default()),
         }
     }
 
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &Discs<'_, f64>,
+        discs: &DiscColumns<'_, f64>,
         _: f64,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         match &self.listed.list {
             Some(list) => observed(law, list, self.share.as_ref(), discs, set),
-            None => Ok(Met::default()),
+            None => Ok(SweepReport::default()),
         }
     }
 
-    fn make_lists(&mut self, state: &State<S>) {
+    fn make_lists(&mut self, state: &MovingDiscs<S>) {
         let ListSearch { sectors, listed, .. } = self;
         let places = state.places();
         for (axis, (made_at, places)) in listed.made_at.iter_mut().zip(places).enumerate() {
@@ -116,12 +117,12 @@ impl<S: Precision, P: Precision> Search<S, P> for ListSearch<S, P> {
         self.listed.made = made;
     }
 
-    fn lists(&self) -> Option<&Listed<S>> {
+    fn lists(&self) -> Option<&ListedPairs<S>> {
         Some(&self.listed)
     }
 }
 
-impl<S: Precision> Listed<S> {
+impl<S: Precision> ListedPairs<S> {
     /// Number of listed pairs.
     pub(crate) fn entries(&self) -> usize {
         self.list.as_ref().map_or(0, VerletList::entries)

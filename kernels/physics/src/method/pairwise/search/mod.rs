@@ -6,23 +6,24 @@ mod sectors;
 
 pub(crate) use lattice::LatticeSearch;
 pub use lattice::OnConflict;
-pub(crate) use lists::{ListSearch, Listed};
+pub(crate) use lists::{ListSearch, ListedPairs};
 pub(crate) use sectors::SectorSearch;
 
-use super::state::{Move, State};
+use super::state::{CellMove, MovingDiscs};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::{Asked, Law};
-use stripmine_kernels::sweep::fast::lattice::Taken;
+use stripmine_kernels::law::{Law, ObservationRequest};
+use stripmine_kernels::sweep::fast::lattice::CellTaken;
 use stripmine_kernels::sweep::fast::{
-    Copies, Discs, DisplacementLimit, Finder, Grid, Met, Rows, Share, Sweep,
+    CellGrid, DiscColumns, DisplacementLimit, Finder, PositionCopies, RankShare, RowLayout, Sweep,
+    SweepReport,
 };
 
 /// Cells and the discs in them. Positions are relative to the centre of a disc's cell.
-pub(crate) trait Cells<S: Precision>: Send + Sync {
+pub(crate) trait SearchCells<S: Precision>: Send + Sync {
     /// Grid of the cells: frame, counts and periodic sides.
-    fn grid(&self) -> Grid;
+    fn grid(&self) -> CellGrid;
 
     /// Returns column and row of a disc; none if it is in no cell.
     fn cell(&self, disc: usize) -> Option<[usize; 2]>;
@@ -34,13 +35,13 @@ pub(crate) trait Cells<S: Precision>: Send + Sync {
     ///
     /// # Errors
     /// [`Taken`] if another disc owns the cell.
-    fn enter(&mut self, to: &Move, state: &State<S>) -> Result<(), Taken>;
+    fn enter(&mut self, to: &CellMove, state: &MovingDiscs<S>) -> Result<(), CellTaken>;
 
     /// Updates the position of a disc that stays in its cell.
     fn settle(&mut self, _disc: usize, _place: [f64; 2]) {}
 
     /// Updates the cells after discs have changed them.
-    fn arrange(&mut self, state: &State<S>);
+    fn arrange(&mut self, state: &MovingDiscs<S>);
 
     /// Returns the discs in order of their cells.
     fn order(&self) -> Vec<u32>;
@@ -67,15 +68,15 @@ pub(crate) trait Cells<S: Precision>: Send + Sync {
 /// Pair search that uses cells.
 ///
 /// The engine is compiled for each search, so that unused parts cost nothing.
-pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
+pub(crate) trait PairSearch<S: Precision, P: Precision>: Send + Sync {
     /// Type of the cells.
-    type Cells: Cells<S>;
+    type Cells: SearchCells<S>;
 
     /// Returns an empty search with space for `discs` discs and the rows of a rank.
-    fn emptied(&self, discs: usize, share: Share) -> Self;
+    fn emptied(&self, discs: usize, share: RankShare) -> Self;
 
     /// Returns the rows of cells that a sweep is built for.
-    fn rows(&self) -> Rows;
+    fn rows(&self) -> RowLayout;
 
     fn cells(&self) -> &Self::Cells;
 
@@ -83,7 +84,7 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
     fn cells_mut(&mut self) -> &mut Self::Cells;
 
     /// Returns the displacement limit of discs, and the copies to update when discs move.
-    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>);
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<PositionCopies<'_>>);
 
     /// Sweeps all pairs with a law.
     ///
@@ -92,11 +93,11 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &Discs<'_, S>,
+        discs: &DiscColumns<'_, S>,
         sums: [&mut [P]; 3],
-        asked: Asked,
+        asked: ObservationRequest,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError>;
+    ) -> Result<SweepReport, ProgramError>;
 
     /// Computes energy, virial, number and depth of the contacts in the current cells or lists, at positions up to `moved` (length) from those of the
     /// last [`sweep`](Self::sweep). Nothing is changed.
@@ -106,19 +107,19 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &Discs<'_, f64>,
+        discs: &DiscColumns<'_, f64>,
         moved: f64,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError>;
+    ) -> Result<SweepReport, ProgramError>;
 
     /// Builds lists, if the search has any, from the current state. Needed whenever discs were renumbered.
-    fn make_lists(&mut self, _state: &State<S>) {}
+    fn make_lists(&mut self, _state: &MovingDiscs<S>) {}
 
     /// Sets the number of list builds.
     fn set_lists_made(&mut self, _made: u64) {}
 
     /// Returns the lists, if the search has any.
-    fn lists(&self) -> Option<&Listed<S>> {
+    fn lists(&self) -> Option<&ListedPairs<S>> {
         None
     }
 }
@@ -127,12 +128,12 @@ pub(crate) trait Search<S: Precision, P: Precision>: Send + Sync {
 fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
     law: &L,
     finder: &F,
-    share: Option<&Share>,
-    discs: &Discs<'_, f64>,
+    share: Option<&RankShare>,
+    discs: &DiscColumns<'_, f64>,
     set: InstructionSet,
-) -> Result<Met, ProgramError> {
+) -> Result<SweepReport, ProgramError> {
     let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.place[0].len()]);
-    let asked = Asked { energy: true, ..Asked::default() };
+    let asked = ObservationRequest { energy: true, ..ObservationRequest::default() };
     Sweep::of_share(finder.rows(), share).run(
         law,
         finder,
@@ -144,6 +145,6 @@ fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
 }
 
 /// Returns the rows that a sweep for a finder is built for.
-fn rows<S: Precision, P: Precision, F: Finder<S, P>>(finder: &F) -> Rows {
+fn rows<S: Precision, P: Precision, F: Finder<S, P>>(finder: &F) -> RowLayout {
     finder.rows()
 }

@@ -1,18 +1,19 @@
 //! Pair search in sectors, which hold any number of discs.
 
-use super::{Cells, Search, observed, rows};
-use crate::method::pairwise::state::{Move, State};
+use super::{PairSearch, SearchCells, observed, rows};
+use crate::method::pairwise::state::{CellMove, MovingDiscs};
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
-use stripmine_kernels::law::{Asked, Law};
-use stripmine_kernels::sweep::fast::lattice::Taken;
+use stripmine_kernels::law::{Law, ObservationRequest};
+use stripmine_kernels::sweep::fast::lattice::CellTaken;
 use stripmine_kernels::sweep::fast::{
-    Copies, Discs, DisplacementLimit, Grid, Met, Rows, Sectors, Share, Sweep, Touches,
+    CellGrid, DiscColumns, DisplacementLimit, PairBuffer, PositionCopies, RankShare, RowLayout, Sectors,
+    Sweep, SweepReport,
 };
 
-impl<S: Precision> Cells<S> for Sectors {
-    fn grid(&self) -> Grid {
+impl<S: Precision> SearchCells<S> for Sectors {
+    fn grid(&self) -> CellGrid {
         *Sectors::grid(self)
     }
 
@@ -24,12 +25,12 @@ impl<S: Precision> Cells<S> for Sectors {
         Sectors::leave(self, disc);
     }
 
-    fn enter(&mut self, to: &Move, _: &State<S>) -> Result<(), Taken> {
+    fn enter(&mut self, to: &CellMove, _: &MovingDiscs<S>) -> Result<(), CellTaken> {
         Sectors::enter(self, to.disc, to.cell);
         Ok(())
     }
 
-    fn arrange(&mut self, state: &State<S>) {
+    fn arrange(&mut self, state: &MovingDiscs<S>) {
         Sectors::arrange(self, |disc| state.number(disc));
     }
 
@@ -45,29 +46,29 @@ impl<S: Precision> Cells<S> for Sectors {
 /// Pair search in sectors.
 pub(crate) struct SectorSearch<P> {
     sectors: Sectors,
-    sweep: Sweep<Touches<P>>,
-    share: Option<Share>,
+    sweep: Sweep<PairBuffer<P>>,
+    share: Option<RankShare>,
 }
 
 impl<P: Precision> SectorSearch<P> {
     /// Creates empty sectors for `discs` discs whose pairs act up to a distance `reach` (length).
-    pub(crate) fn new<S: Precision>(grid: Grid, discs: usize, reach: f64) -> Self {
+    pub(crate) fn new<S: Precision>(grid: CellGrid, discs: usize, reach: f64) -> Self {
         let sectors = Sectors::new(grid, discs, reach);
         let sweep = Sweep::new(rows::<S, P, _>(&sectors));
         SectorSearch { sectors, sweep, share: None }
     }
 }
 
-impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
+impl<S: Precision, P: Precision> PairSearch<S, P> for SectorSearch<P> {
     type Cells = Sectors;
 
-    fn emptied(&self, discs: usize, share: Share) -> Self {
+    fn emptied(&self, discs: usize, share: RankShare) -> Self {
         let sectors = self.sectors.emptied(discs);
         let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
         SectorSearch { sectors, sweep, share: Some(share) }
     }
 
-    fn rows(&self) -> Rows {
+    fn rows(&self) -> RowLayout {
         rows::<S, P, _>(&self.sectors)
     }
 
@@ -79,28 +80,28 @@ impl<S: Precision, P: Precision> Search<S, P> for SectorSearch<P> {
         &mut self.sectors
     }
 
-    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<Copies<'_>>) {
+    fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<PositionCopies<'_>>) {
         (DisplacementLimit::Cell(self.sectors.grid().frame.edge), None)
     }
 
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &Discs<'_, S>,
+        discs: &DiscColumns<'_, S>,
         sums: [&mut [P]; 3],
-        asked: Asked,
+        asked: ObservationRequest,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         self.sweep.run(law, &self.sectors, discs, sums, asked, set)
     }
 
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &Discs<'_, f64>,
+        discs: &DiscColumns<'_, f64>,
         _: f64,
         set: InstructionSet,
-    ) -> Result<Met, ProgramError> {
+    ) -> Result<SweepReport, ProgramError> {
         observed(law, &self.sectors, self.share.as_ref(), discs, set)
     }
 }
