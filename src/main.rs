@@ -18,17 +18,17 @@ static ALLOCATOR: ReportingAllocator = ReportingAllocator;
 unsafe impl GlobalAlloc for ReportingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as the caller promises.
-        limits::given(unsafe { System.alloc(layout) }, layout.size())
+        limits::block_or_end(unsafe { System.alloc(layout) }, layout.size())
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as the caller promises.
-        limits::given(unsafe { System.alloc_zeroed(layout) }, layout.size())
+        limits::block_or_end(unsafe { System.alloc_zeroed(layout) }, layout.size())
     }
 
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // SAFETY: as the caller promises.
-        limits::given(unsafe { System.realloc(block, layout, size) }, size)
+        limits::block_or_end(unsafe { System.realloc(block, layout, size) }, size)
     }
 
     unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
@@ -69,9 +69,9 @@ mod limits {
 
     /// Returns the block; ends the program if it is null.
     #[inline]
-    pub(super) fn given(block: *mut u8, bytes: usize) -> *mut u8 {
+    pub(super) fn block_or_end(block: *mut u8, bytes: usize) -> *mut u8 {
         if block.is_null() {
-            end(bytes);
+            end_out_of_memory(bytes);
         }
         block
     }
@@ -91,7 +91,7 @@ mod limits {
         }
     }
 
-    fn say(to: i32, words: fmt::Arguments<'_>) {
+    fn write_message(to: i32, words: fmt::Arguments<'_>) {
         let mut said = StackMessage { bytes: [0; 512], length: 0 };
         let _ = said.write_fmt(words);
         // SAFETY: `length` bytes were written there. A failed write cannot be reported anywhere.
@@ -99,18 +99,18 @@ mod limits {
     }
 
     #[cold]
-    fn end(bytes: usize) -> ! {
+    fn end_out_of_memory(bytes: usize) -> ! {
         // Only one thread prints the message.
         while IS_ENDING.swap(true, Ordering::SeqCst) {
             std::thread::yield_now();
         }
-        say(
+        write_message(
             2,
             format_args!("error: out of memory: {bytes} bytes could not be allocated\n  help: {REMEDY}\n"),
         );
         if AS_DATA.load(Ordering::Relaxed) && is_untouched() {
             let kind = ErrorClass::InputOutput.name();
-            say(
+            write_message(
                 1,
                 format_args!(
                     "{{\"error\": {{\"kind\": \"{kind}\", \"message\": \"out of memory: {bytes} bytes could not be allocated\", \"place\": null, \"remedy\": \"{REMEDY}\"}}}}\n"

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 use std::fmt;
-use stripmine_physics::averages::of_correlated;
+use stripmine_physics::averages::mean_of_correlated;
 pub(crate) use stripmine_physics::averages::student;
-use stripmine_physics::number::with_bar;
+use stripmine_physics::number::with_error_bar;
 
 /// Mean and range of a quantity over independent runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -48,7 +48,7 @@ pub struct MeanWithBar {
 
 impl fmt::Display for MeanWithBar {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&with_bar(self.value, self.bar))
+        f.write_str(&with_error_bar(self.value, self.bar))
     }
 }
 
@@ -60,13 +60,13 @@ impl MeanWithBar {
     }
 
     /// Mean of a time series of at least one value, which may be correlated.
-    pub(crate) fn of_course(values: &[f64]) -> MeanWithBar {
-        of_correlated(values)
+    pub(crate) fn of_time_series(values: &[f64]) -> MeanWithBar {
+        mean_of_correlated(values)
             .map_or_else(|| MeanWithBar::of(values), |[value, bar]| MeanWithBar { value, bar })
     }
 
     /// Relative deviation from a known value.
-    pub(crate) fn off(self, known: f64) -> MeanWithBar {
+    pub(crate) fn relative_to(self, known: f64) -> MeanWithBar {
         MeanWithBar { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
     }
 
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn deviation_is_relative_to_the_known_value() {
-        assert_eq!(MeanWithBar { value: 4.2, bar: 0.4 }.off(4.0).to_string(), "0.05 ± 0.10");
+        assert_eq!(MeanWithBar { value: 4.2, bar: 0.4 }.relative_to(4.0).to_string(), "0.05 ± 0.10");
     }
 
     #[test]

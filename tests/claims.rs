@@ -18,7 +18,7 @@ fn judged(claim: &Claim) -> Option<(&str, &Claim)> {
 /// Tables and columns named by claims exist in the committed report.
 #[test]
 fn committed_report_decides_every_claim() {
-    let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
+    let (all, folder) = (claims::all().unwrap(), Folder::opened_elsewhere(&root().join("reports")));
     assert!(all.len() >= 90, "{} claims", all.len());
     let items: BTreeSet<&str> = all.iter().filter_map(judged).map(|(item, _)| item).collect();
     let mut wrong = vec![];
@@ -37,7 +37,7 @@ fn committed_report_decides_every_claim() {
 /// commit.
 #[test]
 fn no_limit_is_newer_than_its_result() {
-    let (all, folder) = (claims::all().unwrap(), Folder::of_another(&root().join("reports")));
+    let (all, folder) = (claims::all().unwrap(), Folder::opened_elsewhere(&root().join("reports")));
     let mut newer = vec![];
     for (item, claim) in all.iter().filter_map(judged) {
         let Some(provenance) = folder.provenance(item).unwrap() else { continue };

@@ -47,7 +47,7 @@ fn differences(model: &GranularModel, a: &Particles, b: &Particles) -> [f64; 2] 
     let mut largest = [0.0_f64; 2];
     for (a, b) in a.all().iter().zip(b.all()) {
         assert_eq!(a.id, b.id);
-        let [dx, dy] = model.domain().displacement(a.place(), b.place());
+        let [dx, dy] = model.domain().displacement(a.planar_position(), b.planar_position());
         let dv = [0, 1].map(|axis| a.velocity[axis] - b.velocity[axis]);
         let spin = (a.omega - b.omega).abs();
         largest = [largest[0].max(dx.hypot(dy)), largest[1].max(dv[0].hypot(dv[1])).max(spin)];
@@ -229,7 +229,7 @@ fn naive_forces(model: &GranularModel, discs: &Particles) -> Vec<[f64; 2]> {
     let mut forces = vec![[0.0; 2]; discs.len()];
     for (i, a) in discs.all().iter().enumerate() {
         for (j, b) in discs.all().iter().enumerate().skip(i + 1) {
-            let way = model.domain().displacement(a.place(), b.place());
+            let way = model.domain().displacement(a.planar_position(), b.planar_position());
             let distance = way[0].hypot(way[1]);
             let depth = (a.radius + b.radius - distance).max(0.0);
             for axis in 0..2 {

@@ -128,7 +128,7 @@ fn ranks_take_the_estimated_memory() {
                 .map(str::to_owned);
         let needed = {
             let (prepared, _) = load("bench", &sets, METHODS).unwrap();
-            prepared.memory.on(RankBackend::Threads(ranks)).needed as f64
+            prepared.memory.for_crew(RankBackend::Threads(ranks)).needed as f64
         };
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("run").display().to_string();

@@ -101,7 +101,7 @@ fn checked(text: &str, defined: &str, folder: &Folder) -> (String, usize, Vec<St
 /// With `BLESS=1` the documents get the numbers of the report.
 #[test]
 fn numbers_in_documents_are_those_of_the_report() {
-    let folder = Folder::of_another(&root().join("reports"));
+    let folder = Folder::opened_elsewhere(&root().join("reports"));
     let (mut wrong, mut all) = (vec![], 0);
     for path in documents() {
         let text = fs::read_to_string(&path).unwrap();
@@ -125,7 +125,7 @@ fn numbers_in_documents_are_those_of_the_report() {
 /// Faults name the line, and what exists.
 #[test]
 fn a_number_whose_cell_is_gone_is_a_fault() {
-    let folder = Folder::of_another(&root().join("reports"));
+    let folder = Folder::opened_elsewhere(&root().join("reports"));
     let of = |name: &str, number: &str, definition: &str| {
         let text = format!("a\nb {BEGIN}{name} -->{number}{END}.\n{DEFINITIONS}\n{definition}\n-->\n");
         checked(&text, &text, &folder).2.join("; ")

@@ -113,7 +113,7 @@ const WHOLE: u64 = 15;
 
 /// Samples of a run on a number of ranks, or the reason why it cannot start.
 fn seen(prepared: &Prepared, ranks: usize, steps: u64) -> Result<Seen, String> {
-    ranks::over(RankBackend::Threads(ranks), || seen_as_begun(prepared, steps))
+    ranks::with_backend(RankBackend::Threads(ranks), || seen_as_begun(prepared, steps))
 }
 
 /// Like [`seen`], on the ranks of the current crew.
@@ -215,13 +215,13 @@ fn resumes_on_a_different_rank_count() {
         let [half, end] = [scene.steps / 2, scene.steps].map(Until::Steps);
         let whole = seen(&prepared, 1, scene.steps).unwrap();
         let Some(last) = whole.snapshots.last() else { continue };
-        let (clock, state) = ranks::over(RankBackend::Threads(2), || {
+        let (clock, state) = ranks::with_backend(RankBackend::Threads(2), || {
             let mut first = prepared.start(StartPurpose::Run).unwrap();
             first.advance(&[half], &stop).unwrap();
             (first.clock(), first.snapshot())
         });
         for ranks in [1, 3] {
-            ranks::over(RankBackend::Threads(ranks), || {
+            ranks::with_backend(RankBackend::Threads(ranks), || {
                 let mut second = prepared.start(StartPurpose::Run).unwrap();
                 second.restore(clock, state.clone()).unwrap();
                 second.advance(&[end], &stop).unwrap();
@@ -354,8 +354,8 @@ impl Ranks for Process {
         self.ranks.lock().unwrap().gather(own)
     }
 
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
-        let mut told = self.ranks.lock().unwrap().tell(said);
+    fn broadcast(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
+        let mut told = self.ranks.lock().unwrap().broadcast(said);
         let count = self.told.fetch_add(1, Ordering::Relaxed) + 1;
         if self.fault == Fault::Ends(count) {
             resume_unwind(Box::new("this process ends"));
@@ -382,12 +382,14 @@ fn as_processes<R>(prepared: &Prepared, faults: &[Fault], first: impl FnOnce() -
                 begin(ranks, fault);
                 // Other processes get no simulation, but the reason why their part ended.
                 let _ = catch_unwind(AssertUnwindSafe(|| {
-                    ranks::over(RankBackend::Processes(join), || prepared.start(StartPurpose::Run).map(drop))
+                    ranks::with_backend(RankBackend::Processes(join), || {
+                        prepared.start(StartPurpose::Run).map(drop)
+                    })
                 }));
             });
         }
         begin(own.0, own.1);
-        let found = ranks::over(RankBackend::Processes(join), first);
+        let found = ranks::with_backend(RankBackend::Processes(join), first);
         let _ = ranks::dismiss(join().as_ref());
         PROCESS.take();
         found

@@ -56,7 +56,7 @@ impl Mask {
 
     /// Mask of the right-hand cell alone, to measure the cost of one offset. It covers the neighbourhood of no disc.
     #[inline]
-    pub fn one_place() -> Mask {
+    pub fn single_offset() -> Mask {
         Mask { offsets: vec![Offset { columns: 1, rows: 0 }], half_width: 1 }
     }
 

@@ -50,7 +50,7 @@ impl<T: Kernel> Program<T> {
     }
 
     /// The kernel.
-    pub fn text(&self) -> &T {
+    pub fn kernel(&self) -> &T {
         &self.text
     }
 }

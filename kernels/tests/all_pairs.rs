@@ -8,7 +8,7 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::sweep::all_pairs::{
-    AllPairs, AllPairsOptions, Arithmetic, BANDS, BodyColumns, padded, padding,
+    AllPairs, AllPairsOptions, Arithmetic, BANDS, BodyColumns, padded_length, padding_position,
 };
 
 fn never() -> bool {
@@ -33,7 +33,7 @@ struct System<P> {
 impl<P: Precision> System<P> {
     fn random(count: usize, seed: u64) -> Self {
         let mut random = Stream::new(seed, RandomPurpose::Test, 0);
-        let entries = padded(count);
+        let entries = padded_length(count);
         let mut column = |from: f64, to: f64| -> Vec<P> {
             let bodies = (0..count).map(|_| P::from_f64(random.random_range(from..to)));
             let mut column: Vec<P> = bodies.collect();
@@ -41,7 +41,7 @@ impl<P: Precision> System<P> {
             column
         };
         let mut position = [0, 1, 2].map(|_| column(-1.0, 1.0));
-        position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding(n));
+        position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding_position(n));
         System {
             count,
             position,
@@ -311,7 +311,7 @@ fn too_short_columns_are_rejected() {
 fn a_sweep_stops_between_groups() {
     let system = System::<f64>::random(1000, 4);
     let whole = bits(system.swept::<false, 3>(0.01, Arithmetic::Exact, InstructionSet::best()));
-    let groups = padded(1000) / 16;
+    let groups = padded_length(1000) / 16;
     let mut sweep = AllPairs::<f64, 3>::new(1000);
     for threads in [1, 4] {
         for (most, stops) in [(0, true), (1, true), (groups - 1, true), (groups, false)] {

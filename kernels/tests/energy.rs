@@ -8,7 +8,7 @@ use stripmine_kernels::law::granular::{Contact, ContactArm, Granular};
 use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::forces::Forces;
-use stripmine_kernels::sweep::neighbor_list::{CellOffsets, ListDiscs, NeighbourLists, walk};
+use stripmine_kernels::sweep::neighbor_list::{CellOffsets, ListDiscs, NeighbourLists, sweep_lists};
 use stripmine_kernels::sweep::pair::{Pair, PairBody};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 use support::{CONTACT, Case, System, all_ways, varying};
@@ -122,7 +122,7 @@ fn by_lists<L: Law<2>>(start: &System<f64, f64>, case: &Case, law: &L) -> [f64; 
         mass: &system.mass,
         cell: &system.cell,
     };
-    let met = walk(law, &lists, &offsets, discs, system.discs, 2.3, ASKED, |_, _| ());
+    let met = sweep_lists(law, &lists, &offsets, discs, system.discs, 2.3, ASKED, |_, _| ());
     [met.dissipated, met.energy[0], met.energy[1]]
 }
 

@@ -236,12 +236,12 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
         self.0.find(places, rows, cursor, found, set)
     }
 
-    fn tried(&self) -> f64 {
-        Finder::<f64, f64>::tried(self.0)
+    fn pairs_tried(&self) -> f64 {
+        Finder::<f64, f64>::pairs_tried(self.0)
     }
 
-    fn searched(&self, rows: Range<usize>) -> Range<usize> {
-        Finder::<f64, f64>::searched(self.0, rows)
+    fn search_items(&self, rows: Range<usize>) -> Range<usize> {
+        Finder::<f64, f64>::search_items(self.0, rows)
     }
 
     fn find_part(&self, places: [&[f64]; 2], part: Range<usize>, found: &mut PairBuffer<f64>) {

@@ -109,7 +109,7 @@ mod pool {
 
 use loom::sync::atomic::{AtomicUsize, Ordering};
 use pool::WORKERS;
-use waiting::{each, keep_awake};
+use waiting::{keep_awake, run_stages};
 
 /// Explores all interleavings with at most this many preemptions of threads that did not have to wait.
 fn explored(interruptions: usize, work: impl Fn() + Sync + Send + 'static) {
@@ -121,7 +121,7 @@ fn explored(interruptions: usize, work: impl Fn() + Sync + Send + 'static) {
 /// Parts in stages: each runs once, and none before the previous stage is done.
 fn stages(parts: usize) {
     let done = [AtomicUsize::new(0), AtomicUsize::new(0)];
-    each(WORKERS, [2, parts], &|stage, _| {
+    run_stages(WORKERS, [2, parts], &|stage, _| {
         if stage == 1 {
             assert_eq!(done[0].load(Ordering::Relaxed), parts);
         }
@@ -139,12 +139,12 @@ fn a_stage_begins_when_the_one_before_is_done() {
 fn awake_threads_are_released() {
     explored(2, || {
         keep_awake(WORKERS - 1, || ());
-        keep_awake(WORKERS - 1, || each(WORKERS, [1, 2], &|_, _| ()));
+        keep_awake(WORKERS - 1, || run_stages(WORKERS, [1, 2], &|_, _| ()));
     });
 }
 
 fn simulation() {
-    keep_awake(WORKERS - 1, || each(WORKERS, [1, 2], &|_, _| ()));
+    keep_awake(WORKERS - 1, || run_stages(WORKERS, [1, 2], &|_, _| ()));
 }
 
 /// Two simulations beside the pool keep workers awake, and then have parts for them. Unless they release them, both workers stay

@@ -4,7 +4,7 @@ use super::file::{Claim, ClaimLimit, ExpectedValue, Relation, Unjudged};
 use crate::frame::{ExpressionScope, Expressions};
 use minijinja::value::{Value, ValueKind};
 use stripmine_physics::input::InputErrors;
-use stripmine_physics::number::{significant, with_bar};
+use stripmine_physics::number::{significant, with_error_bar};
 
 /// Verdict of a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -144,7 +144,7 @@ pub(super) fn judge<'c>(
             let said = values.iter().zip(&errors).map(|(value, error)| match *error > 0.0 {
                 // Cells without a value are read as NaN.
                 _ if value.is_nan() => "none".to_owned(),
-                true => with_bar(*value, *error),
+                true => with_error_bar(*value, *error),
                 false => significant(*value, 5),
             });
             Ok(judged(verdict, said.collect::<Vec<_>>().join(", ")))

@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::{counted, significant, with_bar};
+use stripmine_physics::number::{count_with_noun, significant, with_error_bar};
 use stripmine_physics::run::{
     FinishedRun, FunctionPoint, Number, StructureFunction, averages_of, function_of, functions_of,
 };
@@ -55,40 +55,40 @@ impl AverageVerb {
                 return print_json(&function);
             }
             // Warnings go to standard error: the table may be read by a program.
-            doubts(std::slice::from_ref(&function));
+            warn_of_doubts(std::slice::from_ref(&function));
             return match self.csv {
                 true => print(&function.csv()),
-                false => print(&terminal::render(&of_function(&function, &units))),
+                false => print(&terminal::render(&function_table(&function, &units))),
             };
         }
         let functions = functions_of(folders())?;
         if common.json {
             return print_json(&AveragesDocument { averages: &averages, structure: &functions });
         }
-        doubts(&functions);
+        warn_of_doubts(&functions);
         if self.csv {
             let mut bytes = vec![];
-            csv::write(&ResultFrame::from(&table(&averages)), &mut bytes)
+            csv::write(&ResultFrame::from(&full_table(&averages)), &mut bytes)
                 .map_err(CommandFailure::writing("CSV"))?;
             return print(&String::from_utf8_lossy(&bytes));
         }
-        print(&terminal::render(&means(&units.averages(&averages))))?;
+        print(&terminal::render(&means_table(&units.averages(&averages))))?;
         if functions.is_empty() {
             return Ok(());
         }
-        print(&format!("\n{}", terminal::render(&of_structure(&functions, &units))))
+        print(&format!("\n{}", terminal::render(&structure_table(&functions, &units))))
     }
 }
 
 /// Warns of every function whose result is doubtful.
-fn doubts(functions: &[StructureFunction]) {
+fn warn_of_doubts(functions: &[StructureFunction]) {
     for StructureFunction { name, doubt, .. } in functions {
         doubt.iter().for_each(|doubt| warn(format_args!("{name}: {doubt}")));
     }
 }
 
 /// Table of a structure function, one row per point.
-fn of_function(function: &StructureFunction, units: &UnitSystem) -> FormattedTable {
+fn function_table(function: &StructureFunction, units: &UnitSystem) -> FormattedTable {
     let with_unit = |[name, unit]: [&str; 2]| match unit {
         "" => name.to_owned(),
         unit => format!("{name} ({})", units.symbol(unit)),
@@ -103,11 +103,11 @@ fn of_function(function: &StructureFunction, units: &UnitSystem) -> FormattedTab
         TableCell::Number(*mean, decimals_of_mean(*mean, *bar))
     })
     .cell("± 95 %", |point| TableCell::Number(point.bar, decimals(point.bar, 2)))
-    .table("structure", format!("{} of {}", function.name, counted(function.runs, "run", "runs")))
+    .table("structure", format!("{} of {}", function.name, count_with_noun(function.runs, "run", "runs")))
 }
 
 /// Table of the characteristic numbers of structure functions, such as a peak height.
-fn of_structure(functions: &[StructureFunction], units: &UnitSystem) -> FormattedTable {
+fn structure_table(functions: &[StructureFunction], units: &UnitSystem) -> FormattedTable {
     let of = |function: &'_ StructureFunction| -> Vec<(&'static str, Number)> {
         function.headlines.iter().map(|number| (function.name, number.clone())).collect()
     };
@@ -127,7 +127,7 @@ fn of_structure(functions: &[StructureFunction], units: &UnitSystem) -> Formatte
 }
 
 /// Table of the means for the terminal. Quantities without a mean are listed below it.
-fn means(averages: &RunAverages) -> FormattedTable {
+fn means_table(averages: &RunAverages) -> FormattedTable {
     let known: Vec<(&Average, &Estimate)> = averages
         .quantities
         .iter()
@@ -172,18 +172,18 @@ fn means(averages: &RunAverages) -> FormattedTable {
     };
     FrameBuilder::of(&known)
         .text("quantity", |(it, _)| name(it))
-        .text("mean ± 95 %", |(_, it)| with_bar(it.mean, it.bar))
+        .text("mean ± 95 %", |(_, it)| with_error_bar(it.mean, it.bar))
         .text("unit", |(it, _)| it.unit.clone())
         .cell("from time", |(_, it)| TableCell::Number(it.equilibrated_at, decimals(it.equilibrated_at, 3)))
         .cell("samples", |(_, it)| TableCell::Count(it.independent_samples as u64))
-        .table("averages", format!("Means of {}, {} rows", counted(averages.runs, "run", "runs"), averages.rows))
+        .table("averages", format!("Means of {}, {} rows", count_with_noun(averages.runs, "run", "runs"), averages.rows))
         .notes(notes.into_iter().flatten())
         .note("Samples are independent; from time: end of the transient. --csv has standard errors and correlation times.")
 }
 
 /// Full table of the averages, a row for each quantity.
-fn table(averages: &RunAverages) -> FormattedTable {
-    let runs = counted(averages.runs, "run", "runs");
+fn full_table(averages: &RunAverages) -> FormattedTable {
+    let runs = count_with_noun(averages.runs, "run", "runs");
     let number = |of: fn(&Estimate) -> f64| {
         move |average: &&Average| match &average.outcome {
             AverageOutcome::Mean(estimate) => TableCell::Number(of(estimate), decimals(of(estimate), 3)),

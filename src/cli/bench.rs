@@ -2,7 +2,7 @@
 
 use super::display::decimals;
 use super::processes;
-use super::run::{MOST_RANKS, threads_of_ranks};
+use super::run::{MOST_RANKS, check_total_threads};
 use crate::console::{CommandFailure, Common, clear_progress, count, print, print_json, progress};
 use crate::provenance::built;
 use crate::report::{FormattedTable, FrameBuilder, TableCell, terminal};
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use stripmine_physics::method::throughput::{MeasurementError, Throughput, ThroughputRequest, throughput};
 use stripmine_physics::method::{Bench, BenchOption, MethodEntry, Methods, StartPurpose};
-use stripmine_physics::number::{counted, significant};
+use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::ranks::{self, RankBackend};
 use stripmine_physics::scene::{MistakeKind, SceneErrors, SceneValues};
 
@@ -68,7 +68,7 @@ const OPTIONS: &[(&str, OptionKind, &str)] = options! {
 };
 
 /// Kind of value and help of an option; a word for options of methods unknown to this program.
-fn described(option: &BenchOption) -> (OptionKind, &'static str) {
+fn kind_and_help(option: &BenchOption) -> (OptionKind, &'static str) {
     let known = OPTIONS.iter().find(|(name, ..)| *name == option.name);
     known.map_or((OptionKind::Word, "A value of the scene"), |&(_, takes, help)| (takes, help))
 }
@@ -84,7 +84,7 @@ fn options(methods: Methods) -> impl Iterator<Item = &'static BenchOption> {
 pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
     options(methods).map(|option| {
         let value = option.name.to_uppercase().replace('-', "_");
-        let (takes, help) = described(option);
+        let (takes, help) = kind_and_help(option);
         let argument = Arg::new(option.name).long(option.name).value_name(value).help(help);
         match takes {
             OptionKind::Nothing => argument.action(ArgAction::SetTrue),
@@ -97,7 +97,7 @@ pub(super) fn arguments(methods: Methods) -> impl Iterator<Item = Arg> {
 
 /// Value of an option as text, if it was given.
 fn value_of(option: &BenchOption, given: &ArgMatches) -> Option<String> {
-    match described(option).0 {
+    match kind_and_help(option).0 {
         OptionKind::Nothing => given.get_flag(option.name).then(String::new),
         OptionKind::Count => given.get_one::<u64>(option.name).map(u64::to_string),
         OptionKind::Number => given.get_one::<f64>(option.name).map(f64::to_string),
@@ -157,28 +157,29 @@ impl BenchVerb {
         let is_of_several = common.threads.len() > 1 || self.ranks.len() > 1;
         let threads =
             common.threads.iter().copied().max().map_or_else(rayon::current_num_threads, usize::from);
-        threads_of_ranks(self.ranks.iter().copied().max().unwrap_or(1), threads)?;
+        check_total_threads(self.ranks.iter().copied().max().unwrap_or(1), threads)?;
         if is_of_several {
-            return self.on_several(entry, bench, &given, common);
+            return self.measure_scaling(entry, bench, &given, common);
         }
         let RankBackend::Processes(join) = common.crew else {
             let ranks = self.ranks.first().copied().map_or(1, usize::from);
-            return self.on_one((entry, bench, &given), RankBackend::Threads(ranks), common);
+            return self.measure_once((entry, bench, &given), RankBackend::Threads(ranks), common);
         };
         if !self.ranks.is_empty() {
-            return Err(processes::ranks_twice());
+            return Err(processes::duplicate_ranks_failure());
         }
-        let measurement = self.measurement(entry, bench, &given).map_err(|error| refused(error, &given))?;
-        measurement.prepared.memory.clone().on(common.crew).fits(bench.name)?;
+        let measurement =
+            self.measurement(entry, bench, &given).map_err(|error| measurement_failure(error, &given))?;
+        measurement.prepared.memory.clone().for_crew(common.crew).fits(bench.name)?;
         let same = format!("bench\n{:?}\n{}", built(), measurement.prepared.scene);
-        let first = || self.on_one((entry, bench, &given), common.crew, common);
-        processes::together(join, &same, first, || {
+        let first = || self.measure_once((entry, bench, &given), common.crew, common);
+        processes::run_jointly(join, &same, first, || {
             processes::serve(common.crew, || measurement.prepared.start(StartPurpose::Measurement).map(drop));
         })
     }
 
     /// Measures on one crew of ranks.
-    fn on_one(
+    fn measure_once(
         &self,
         (entry, bench, given): (&'static MethodEntry, &'static Bench, &[OptionOverride]),
         crew: RankBackend,
@@ -186,10 +187,14 @@ impl BenchVerb {
     ) -> Result<(), CommandFailure> {
         let bar = progress(common, "bench");
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let result = ranks::over(crew, || throughput(self.measurement(entry, bench, given)?, show));
+        let result = ranks::with_backend(crew, || throughput(self.measurement(entry, bench, given)?, show));
         clear_progress();
-        let result = result.map_err(|error| refused(error, given))?;
-        if common.json { print_json(&result) } else { print(&(terminal::fitted(&text(&result)) + "\n")) }
+        let result = result.map_err(|error| measurement_failure(error, given))?;
+        if common.json {
+            print_json(&result)
+        } else {
+            print(&(terminal::wrap_message(&throughput_text(&result)) + "\n"))
+        }
     }
 
     fn measurement(
@@ -207,7 +212,7 @@ impl BenchVerb {
     }
 
     /// Measures on several numbers of ranks and threads in turn.
-    fn on_several(
+    fn measure_scaling(
         &self,
         entry: &'static MethodEntry,
         bench: &'static Bench,
@@ -227,16 +232,16 @@ impl BenchVerb {
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
         let found = scaling(&|| self.measurement(entry, bench, given), &crews, show);
         clear_progress();
-        let found = found.map_err(|error| refused(error, given))?;
+        let found = found.map_err(|error| measurement_failure(error, given))?;
         if common.json {
-            return print_json(&for_programs(&found));
+            return print_json(&scaling_json(&found));
         }
-        print(&[by_threads(&found), by_phases(&found)].map(|table| terminal::render(&table)).join("\n"))
+        print(&[threads_table(&found), phases_table(&found)].map(|table| terminal::render(&table)).join("\n"))
     }
 }
 
 /// JSON of a measurement on several numbers of ranks and threads.
-fn for_programs(found: &Scaling) -> Value {
+fn scaling_json(found: &Scaling) -> Value {
     let Scaling { what, particles, steps, repeats, settings, same_bits, by_threads, phases } = found;
     let of_threads = |it: &ThreadResult| {
         let scaling::ThreadLayout { ranks, threads } = it.crew;
@@ -262,10 +267,10 @@ fn for_programs(found: &Scaling) -> Value {
 const FORESEEN: [usize; 2] = [8, 16];
 
 /// Table of rate and gain for each number of threads.
-fn by_threads(found: &Scaling) -> FormattedTable {
+fn threads_table(found: &Scaling) -> FormattedTable {
     let bits = if found.same_bits { "same bits on all" } else { "bits DIFFER" };
     let foreseen = FORESEEN.map(|threads| {
-        let gain = found.foreseen(threads).map_or("–".to_owned(), |gain| significant(gain, 3));
+        let gain = found.predicted_speedup(threads).map_or("–".to_owned(), |gain| significant(gain, 3));
         format!("{gain} times on {threads} threads")
     });
     FrameBuilder::of(&found.by_threads)
@@ -280,9 +285,9 @@ fn by_threads(found: &Scaling) -> FormattedTable {
             format!(
                 "{}: {}, {}, {} in turn; {bits}",
                 found.what,
-                counted(found.particles, "particle", "particles"),
-                counted(found.steps, "step", "steps"),
-                counted(found.repeats, "repeat", "repeats"),
+                count_with_noun(found.particles, "particle", "particles"),
+                count_with_noun(found.steps, "step", "steps"),
+                count_with_noun(found.repeats, "repeat", "repeats"),
             ),
         )
         .note(format!("Predicted by Amdahl's law alone: {}.", foreseen.join(", ")))
@@ -294,7 +299,7 @@ fn rounded(value: f64, digits: i32) -> TableCell {
 }
 
 /// Table of the time of each phase, and of the part of it that does not scale.
-fn by_phases(found: &Scaling) -> FormattedTable {
+fn phases_table(found: &Scaling) -> FormattedTable {
     let mut rows = FrameBuilder::of(&found.phases).text("phase", |it| it.name.clone());
     for (at, ThreadResult { crew: scaling::ThreadLayout { ranks, threads }, .. }) in
         found.by_threads.iter().enumerate()
@@ -308,17 +313,17 @@ fn by_phases(found: &Scaling) -> FormattedTable {
 }
 
 /// Failure of a measurement; mistakes of the scene are reported as mistakes of the options.
-fn refused(error: MeasurementError, given: &[OptionOverride]) -> CommandFailure {
+fn measurement_failure(error: MeasurementError, given: &[OptionOverride]) -> CommandFailure {
     match error {
         MeasurementError::Scene(mistakes) if mistakes.0.iter().all(|it| it.reason != MistakeKind::Memory) => {
-            CommandFailure::Options(in_options(mistakes, given))
+            CommandFailure::Options(mistakes_of_options(mistakes, given))
         }
         error => error.into(),
     }
 }
 
 /// Replaces the location of each mistake by the option that caused it.
-fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[OptionOverride]) -> SceneErrors {
+fn mistakes_of_options(SceneErrors(mut mistakes): SceneErrors, given: &[OptionOverride]) -> SceneErrors {
     for mistake in &mut mistakes {
         let option = given.iter().find(|given| mistake.file == format!("--set {}", given.text));
         if let Some(given) = option {
@@ -329,18 +334,18 @@ fn in_options(SceneErrors(mut mistakes): SceneErrors, given: &[OptionOverride]) 
 }
 
 /// A setting for reading: numbers to five digits.
-fn brief(value: &Value) -> String {
+fn setting_text(value: &Value) -> String {
     match value {
         Value::Number(number) if number.is_f64() => significant(number.as_f64().unwrap_or(f64::NAN), 5),
         Value::String(word) => word.clone(),
         Value::Bool(yes) => if *yes { "yes" } else { "no" }.to_owned(),
         Value::Null => "none".to_owned(),
-        Value::Array(items) => items.iter().map(brief).collect::<Vec<_>>().join(" × "),
+        Value::Array(items) => items.iter().map(setting_text).collect::<Vec<_>>().join(" × "),
         other => other.to_string(),
     }
 }
 
-fn text(result: &Throughput) -> String {
+fn throughput_text(result: &Throughput) -> String {
     let Throughput { what, particles, settings, .. } = result;
     let each = |seconds: f64| 1e9 * seconds / (*particles as f64 * result.steps as f64);
     let phases: Vec<String> = result
@@ -348,8 +353,10 @@ fn text(result: &Throughput) -> String {
         .iter()
         .map(|(phase, &seconds)| format!("{} {}", phase.replace('_', " "), significant(each(seconds), 3)))
         .collect();
-    let settings: Vec<String> =
-        settings.iter().map(|(name, value)| format!("{} {}", name.replace('_', " "), brief(value))).collect();
+    let settings: Vec<String> = settings
+        .iter()
+        .map(|(name, value)| format!("{} {}", name.replace('_', " "), setting_text(value)))
+        .collect();
     let compared = result
         .compared
         .iter()
@@ -359,14 +366,14 @@ fn text(result: &Throughput) -> String {
     format!(
         "{what}: {}, {}, {}\n{} million {} a second (median {}) over {} of {}\n\
          nanoseconds per particle and step: {} in total; {}\n{}\nchecksum {}\n",
-        counted(particles, "particle", "particles"),
+        count_with_noun(particles, "particle", "particles"),
         settings.join(", "),
-        counted(result.threads, "thread", "threads"),
+        count_with_noun(result.threads, "thread", "threads"),
         significant(result.rate * 1e-6, 4),
         result.rate_name.trim_end_matches("_per_second").replace('_', "-"),
         significant(result.median_rate * 1e-6, 4),
-        counted(result.repeats, "repeat", "repeats"),
-        counted(result.steps, "step", "steps"),
+        count_with_noun(result.repeats, "repeat", "repeats"),
+        count_with_noun(result.steps, "step", "steps"),
         significant(each(result.seconds), 3),
         phases.join(", "),
         observed.join(", "),

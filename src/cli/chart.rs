@@ -1,8 +1,10 @@
 //! `stripmine chart`: studies written as data and charts. Methods add their own studies.
 
-use super::explain::{failed, width};
+use super::explain::{parse_target_error, plan_failure};
 use super::processes;
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress, say, warn};
+use crate::console::{
+    CommandFailure, Common, clear_progress, print, print_json, print_message, progress, warn,
+};
 use crate::model::machines;
 use crate::provenance::{Provenance, built};
 use crate::results::FinishedItem;
@@ -17,7 +19,7 @@ use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::counted;
+use stripmine_physics::number::count_with_noun;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::RankBackend;
 use stripmine_physics::scene::Width;
@@ -94,7 +96,7 @@ struct AccuracyVerb {
     #[arg(long = "of", value_name = "QUANTITY")]
     quantity: Option<String>,
     /// Marks the plan for this target error, such as 1% or 0.02
-    #[arg(long, value_parser = width)]
+    #[arg(long, value_parser = parse_target_error)]
     error: Option<Width>,
     /// Averages each run between two times instead of over its steady state
     #[arg(long, num_args = 2, value_names = ["FROM", "TO"])]
@@ -131,7 +133,7 @@ struct StabilityVerb {
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(SEEDS))]
     seeds: u16,
     /// Relative tolerance of the step at an edge
-    #[arg(long, default_value_t = 0.05, value_parser = part)]
+    #[arg(long, default_value_t = 0.05, value_parser = edge_tolerance)]
     tolerance: f64,
     /// Limit in processor seconds; if it is short, the map has fewer seeds, values and steps, and shorter runs
     #[arg(long, default_value_t = 300, value_parser = clap::value_parser!(u32).range(BUDGET))]
@@ -142,7 +144,7 @@ struct StabilityVerb {
 }
 
 /// Parses the relative tolerance of an edge.
-fn part(text: &str) -> Result<f64, String> {
+fn edge_tolerance(text: &str) -> Result<f64, String> {
     let is_one = |part: &f64| (1e-6..=1.0).contains(part);
     text.parse()
         .ok()
@@ -182,7 +184,7 @@ impl WorkPrecisionVerb {
         let (budget, repeats) = (f64::from(self.budget), self.repeats.into());
         let effort = work_precision::DiagramEffort { budget, repeats, phases: PHASES, machine };
         let place = StudyDestination { name: "work-precision", scene: &self.scene, out: self.out.as_deref() };
-        place.study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
+        place.run_study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
             let data = work_precision(&subject, &effort, trial, journal, progress)?;
             Ok(work_precision::made(&[(stem, data)]))
         })
@@ -197,16 +199,16 @@ impl AccuracyVerb {
         }
         let case = StudyCase::load(&self.scene, &self.overrides, methods)?;
         let target = PlanTarget::of(&case, self.quantity.as_deref(), self.error);
-        let target = target.and_then(|target| target.over(self.window.as_deref())).map_err(failed)?;
+        let target = target.and_then(|target| target.over(self.window.as_deref())).map_err(plan_failure)?;
         let place = StudyDestination { name: accuracy::NAME, scene: &self.scene, out: self.out.as_deref() };
         let options =
             format!("{} {:?} {:?} budget {}", target.quantity.name, self.error, target.window, self.budget);
-        place.study((common, RankBackend::One), &case, &options, |_, journal, progress, stem| {
+        place.run_study((common, RankBackend::One), &case, &options, |_, journal, progress, stem| {
             let seconds = f64::from(self.budget) / rayon::current_num_threads() as f64;
-            let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::asked() };
+            let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::interruption_flag() };
             let tell = |share: f64| progress(share);
             let shown: (&str, &dyn Fn(f64), &Journal) = (&stem, &tell, journal);
-            accuracy::accuracy(&case, &target, seconds, trial, shown).map_err(failed)
+            accuracy::accuracy(&case, &target, seconds, trial, shown).map_err(plan_failure)
         })
     }
 }
@@ -232,7 +234,7 @@ impl StabilityVerb {
             self.budget
         );
         let place = StudyDestination { name: "stability", scene: &self.scene, out: self.out.as_deref() };
-        place.study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
+        place.run_study((common, common.crew), &subject, &options, |trial, journal, progress, stem| {
             let data = stability(&subject, over, &effort, trial, journal, progress)?;
             Ok(stability::made(&[(stem, data)]))
         })
@@ -240,7 +242,7 @@ impl StabilityVerb {
 }
 
 /// Writes the result of a study and prints it.
-fn written(
+fn write_results(
     common: &Common,
     folder: &Folder,
     name: &str,
@@ -248,13 +250,13 @@ fn written(
     begun: Instant,
 ) -> Result<(), CommandFailure> {
     let provenance = Provenance::here(common.command.clone(), begun.elapsed().as_secs_f64());
-    let (path, section) = signals::whole(|| {
+    let (path, section) = signals::run_protected(|| {
         let written = folder.write(name, made, &provenance)?;
         folder.write_page(&[name]).map(|()| written)
     })?;
     clear_progress();
     if !common.quiet {
-        say(format_args!("written: {}", quoted::path(&path)));
+        print_message(format_args!("written: {}", quoted::path(&path)));
     }
     if common.json {
         return print_json(&made.json());
@@ -288,7 +290,7 @@ impl StudyDestination<'_> {
     }
 
     /// Runs a study, resuming from the finished runs in its folder.
-    fn study(
+    fn run_study(
         &self,
         (common, crew): (&Common, RankBackend),
         case: &StudyCase,
@@ -316,14 +318,14 @@ impl StudyDestination<'_> {
         let journal = Journal::open(&out, &case.identity(self.name, options), team)?;
         journal.notes().iter().for_each(warn);
         if !common.quiet && !journal.is_empty() {
-            let finished = counted(journal.len(), "finished run", "finished runs");
-            say(format_args!("resuming with {finished} in {}", quoted::path(&out)));
+            let finished = count_with_noun(journal.len(), "finished run", "finished runs");
+            print_message(format_args!("resuming with {finished} in {}", quoted::path(&out)));
         }
         let bar = progress(common, self.name);
         let start = Instant::now();
         let show = |share: f64| bar.set_position((1e3 * share) as u64);
-        let trial = TrialControl { watch: &Stopwatch::processor(), stop: signals::asked() };
+        let trial = TrialControl { watch: &Stopwatch::processor(), stop: signals::interruption_flag() };
         let made = make(trial, &journal, &show, stem)?;
-        folder.map_or(Ok(()), |folder| written(common, &folder, self.name, &made, start))
+        folder.map_or(Ok(()), |folder| write_results(common, &folder, self.name, &made, start))
     }
 }

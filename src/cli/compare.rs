@@ -64,34 +64,34 @@ impl CompareVerb {
         let read = |more: &[String]| -> Result<Prepared, CommandFailure> {
             let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
             let read = load(&self.scene, &overrides, methods);
-            let (prepared, _) = read.map_err(|mistakes| of_against(mistakes, more))?;
+            let (prepared, _) = read.map_err(|mistakes| mistakes_of_against(mistakes, more))?;
             Ok(prepared)
         };
         let (prepared, against) = (read(&[])?, read(&self.against)?);
-        prepared.memory.clone().beside(&against.memory).fits(&self.scene)?;
+        prepared.memory.clone().with_concurrent(&against.memory).fits(&self.scene)?;
         let (mut first, mut second) = (prepared.start(StartPurpose::Run)?, against.start(StartPurpose::Run)?);
         let (until, domain) = (prepared.schedule.until, prepared.domain);
-        let mut looks = vec![look(&*first, &*second, &domain)];
+        let mut looks = vec![trajectory_difference(&*first, &*second, &domain)];
         for part in (0..=PARTS).rev() {
-            let moment = share(until, part);
-            if moment.has_come(&first.clock()) {
+            let moment = fraction_of_run(until, part);
+            if moment.has_been_reached(&first.clock()) {
                 continue;
             }
             first.advance(&[moment], &AtomicBool::new(false))?;
             second.advance(&[moment], &AtomicBool::new(false))?;
-            looks.push(look(&*first, &*second, &domain));
+            looks.push(trajectory_difference(&*first, &*second, &domain));
         }
         let first_difference = looks.iter().position(|look| !look.same_bits);
         let comparison = Comparison { same_bits: first_difference.is_none(), first_difference, looks };
         match common.json {
             true => print_json(&comparison),
-            false => print(&text(&self.scene, &comparison)),
+            false => print(&comparison_text(&self.scene, &comparison)),
         }
     }
 }
 
 /// Names `--against` as the location of mistakes in overrides of the second configuration.
-fn of_against(SceneErrors(mut mistakes): SceneErrors, against: &[String]) -> SceneErrors {
+fn mistakes_of_against(SceneErrors(mut mistakes): SceneErrors, against: &[String]) -> SceneErrors {
     for mistake in &mut mistakes {
         if let Some(text) =
             mistake.file.strip_prefix("--set ").filter(|text| against.iter().any(|it| it == text))
@@ -103,7 +103,7 @@ fn of_against(SceneErrors(mut mistakes): SceneErrors, against: &[String]) -> Sce
 }
 
 /// End of the run divided by 2^part.
-fn share(until: Until, part: u32) -> Until {
+fn fraction_of_run(until: Until, part: u32) -> Until {
     match until {
         Until::Steps(steps) => Until::Steps((steps >> part).max(1)),
         Until::Events(events) => Until::Events((events >> part).max(1)),
@@ -111,7 +111,11 @@ fn share(until: Until, part: u32) -> Until {
     }
 }
 
-fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> TrajectoryDifference {
+fn trajectory_difference(
+    first: &dyn Simulation,
+    second: &dyn Simulation,
+    domain: &Domain,
+) -> TrajectoryDifference {
     let (one, other): (Particles, Particles) = (first.particles(), second.particles());
     let by_id: HashMap<u32, _> = other.all().iter().map(|particle| (particle.id, particle)).collect();
     let clock = first.clock();
@@ -146,7 +150,7 @@ fn look(first: &dyn Simulation, second: &dyn Simulation, domain: &Domain) -> Tra
     seen
 }
 
-fn text(scene: &str, comparison: &Comparison) -> String {
+fn comparison_text(scene: &str, comparison: &Comparison) -> String {
     let looks = &comparison.looks;
     let answer = match comparison.first_difference {
         None => format!("{scene}: same bits in all {} samples", looks.len()),

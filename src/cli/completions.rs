@@ -19,14 +19,14 @@ pub(super) struct Completions {
 impl Completions {
     pub(super) fn run(&self, methods: Methods) -> Result<(), CommandFailure> {
         let mut text = Vec::new();
-        generate(self.shell, &mut completed(command(methods), methods), "stripmine", &mut text);
+        generate(self.shell, &mut with_known_values(command(methods), methods), "stripmine", &mut text);
         print(&String::from_utf8_lossy(&text))
     }
 }
 
 /// The command with the values that its arguments can name: presets, machines, keys. Shells offer files where none of these fits; fish
 /// completes verbs and options only.
-fn completed(command: Command, methods: Methods) -> Command {
+fn with_known_values(command: Command, methods: Methods) -> Command {
     let presets: Vec<String> = scene::presets(methods).map(|preset| preset.name.to_owned()).collect();
     let machines: Vec<String> = machines::names().map(str::to_owned).collect();
     let mut keys: Vec<String> = methods
@@ -62,7 +62,7 @@ mod tests {
     fn shells_know_presets_machines_and_keys() {
         for shell in [Shell::Bash, Shell::Zsh] {
             let mut text = Vec::new();
-            generate(shell, &mut completed(command(METHODS), METHODS), "stripmine", &mut text);
+            generate(shell, &mut with_known_values(command(METHODS), METHODS), "stripmine", &mut text);
             let text = String::from_utf8(text).unwrap();
             for word in
                 ["pipe-small", "cold-collapse", "cray-y-mp-el", "particles.packing_fraction=", "run.steps="]

@@ -1,7 +1,7 @@
 //! `stripmine explain`: finds the cheapest configuration, step and run length for a target error.
 
 use super::display::decimals;
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, say, warn};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, print_message, warn};
 use crate::report::{FrameBuilder, TableCell, terminal};
 use crate::study::explain::{
     ExplainError, LIMIT, PlanCache, PlanCacheError, PlanTarget, RunPlan, SECONDS, explain, page, seconds,
@@ -15,10 +15,10 @@ use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use stripmine_physics::averages::AverageOutcome;
-use stripmine_physics::io::replace::{may_put, put, try_beside};
+use stripmine_physics::io::replace::{check_folder_writable, check_may_write, write_atomically_new};
 use stripmine_physics::memory::peak;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::{counted, significant};
+use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Width;
@@ -36,7 +36,7 @@ pub(super) struct ExplainVerb {
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE")]
     overrides: Vec<String>,
     /// Target error of the mean (95 % confidence), such as 1% or 0.02; default: the error of the scene as it is
-    #[arg(long, value_parser = width)]
+    #[arg(long, value_parser = parse_target_error)]
     error: Option<Width>,
     /// Quantity to average; default: the main quantity of the method
     #[arg(long = "of", value_name = "QUANTITY")]
@@ -100,7 +100,7 @@ const MEGABYTE: f64 = 1e6;
 /// Memory that trials may take beyond a run, since several configurations are prepared one after the other (bytes).
 const MORE: f64 = 16e6;
 
-pub(super) fn width(text: &str) -> Result<Width, String> {
+pub(super) fn parse_target_error(text: &str) -> Result<Width, String> {
     Width::parse(text).ok_or_else(|| "expected a number above 0, or a percentage such as 1%".to_owned())
 }
 
@@ -140,65 +140,68 @@ impl ExplainVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         let kept = PlanCache::here();
         if self.forget {
-            let count = kept.forget().map_err(failed)?;
-            print(&format!("removed {}\n", counted(count, "cached measurement", "cached measurements")))?;
+            let count = kept.forget().map_err(plan_failure)?;
+            print(&format!(
+                "removed {}\n",
+                count_with_noun(count, "cached measurement", "cached measurements")
+            ))?;
         }
         let Some(scene) = &self.scene else { return Ok(()) };
         // Checked before any trial runs.
-        self.may_write()?;
+        self.check_writable()?;
         let case = StudyCase::load(scene, &self.overrides, methods)?;
-        let target = PlanTarget::of(&case, self.quantity.as_deref(), self.error).map_err(failed)?;
+        let target = PlanTarget::of(&case, self.quantity.as_deref(), self.error).map_err(plan_failure)?;
         let target = PlanTarget { within: self.within, limit: self.limit.unwrap_or(LIMIT), ..target };
-        let target = target.over(self.window.as_deref()).map_err(failed)?;
+        let target = target.over(self.window.as_deref()).map_err(plan_failure)?;
         let seconds = match (self.estimate, self.patient) {
             (true, _) => 0.0,
             (_, true) => SECONDS[1],
             _ => self.seconds.map_or(SECONDS[0], f64::from),
         };
         if !common.quiet && seconds > 0.0 {
-            say(format_args!("running trials for up to {seconds} s (cached trials are reused)"));
+            print_message(format_args!("running trials for up to {seconds} s (cached trials are reused)"));
         }
         let notice = |error: &PlanCacheError| {
             if !common.quiet {
                 warn(format_args!("trials are not cached: {error}"));
             }
         };
-        let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::asked() };
-        let plan = explain(&case, &target, seconds, &kept, trial, &notice).map_err(failed)?;
+        let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::interruption_flag() };
+        let plan = explain(&case, &target, seconds, &kept, trial, &notice).map_err(plan_failure)?;
         clear_progress();
         if !common.json {
             print(&page(&plan))?;
         }
-        let written = self.write.as_ref().map_or(Ok(()), |file| self.written(&plan, file, &case));
+        let written = self.write.as_ref().map_or(Ok(()), |file| self.write_plan(&plan, file, &case));
         if let (Some(file), Ok(()), false) = (&self.write, &written, common.quiet) {
-            say(format_args!("written: {}", quoted::path(file)));
+            print_message(format_args!("written: {}", quoted::path(file)));
         }
-        let (analysis, refused) = match self.analyze.then(|| self.may_analyze(&plan)) {
+        let (analysis, refused) = match self.analyze.then(|| self.confirm_analysis(&plan)) {
             None => (Analysis::default(), Ok(())),
             Some(Err(refusal)) => (Analysis::default(), Err(refusal)),
-            Some(Ok(())) => (Self::analyzed(&plan, &target, &case)?, Ok(())),
+            Some(Ok(())) => (Self::analyze_plan(&plan, &target, &case)?, Ok(())),
         };
         let Analysis { rows, cut_off } = analysis;
         if common.json {
             print_json(&PlanDocument { plan, analyzed: rows, cut_off })?;
         } else if !rows.is_empty() {
-            print(&table(&rows, cut_off))?;
+            print(&analysis_table(&rows, cut_off))?;
         }
-        if signals::asked().load(Ordering::SeqCst) {
+        if signals::interruption_flag().load(Ordering::SeqCst) {
             return Err(CommandFailure::Stopped(signals::ProcessEnd::Whole));
         }
         written.and(refused.map_err(CommandFailure::from))
     }
 
     /// Checks that the plan can be written to the file of `--write`.
-    fn may_write(&self) -> Result<(), CommandFailure> {
+    fn check_writable(&self) -> Result<(), CommandFailure> {
         let Some(file) = &self.write else { return Ok(()) };
-        may_put(file, self.overwrite, "choose another --write, or add --overwrite to lose it")?;
-        try_beside(file).map_err(CommandFailure::writing(file.display().to_string()))
+        check_may_write(file, self.overwrite, "choose another --write, or add --overwrite to lose it")?;
+        check_folder_writable(file).map_err(CommandFailure::writing(file.display().to_string()))
     }
 
     /// Checks that the plan may be executed; asks the user if it takes long.
-    fn may_analyze(&self, plan: &RunPlan) -> Result<(), LongRun> {
+    fn confirm_analysis(&self, plan: &RunPlan) -> Result<(), LongRun> {
         let likely = plan.seconds.likely;
         if likely <= LONG || self.yes {
             return Ok(());
@@ -217,7 +220,7 @@ impl ExplainVerb {
     }
 
     /// Writes the plan as a scene file; on failure the old file stays.
-    fn written(&self, plan: &RunPlan, file: &Path, case: &StudyCase) -> Result<(), CommandFailure> {
+    fn write_plan(&self, plan: &RunPlan, file: &Path, case: &StudyCase) -> Result<(), CommandFailure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let seeds = if plan.seeds > 1 { format!(" --seeds {}", plan.seeds) } else { String::new() };
         let text = format!(
@@ -226,21 +229,26 @@ impl ExplainVerb {
             if seeds.is_empty() { "" } else { " with its seeds" },
             prepared.scene
         );
-        put(file, &text, self.overwrite).map_err(CommandFailure::writing(file.display().to_string()))
+        write_atomically_new(file, &text, self.overwrite)
+            .map_err(CommandFailure::writing(file.display().to_string()))
     }
 
     /// Executes one run of the plan and compares it with the estimates.
-    fn analyzed(plan: &RunPlan, target: &PlanTarget, case: &StudyCase) -> Result<Analysis, CommandFailure> {
+    fn analyze_plan(
+        plan: &RunPlan,
+        target: &PlanTarget,
+        case: &StudyCase,
+    ) -> Result<Analysis, CommandFailure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let observed = (case.entry.quantities, target.place);
         // An interrupted run ends early and is reported as cut off.
         let held = signals::hold();
-        let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::asked() };
+        let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::interruption_flag() };
         let found: TrialSample = trial
             .sample(&prepared, observed, SampleSpan::Planned(plan.time, None))
             .map_err(CommandFailure::from)?;
         drop(held);
-        if let Some(cut_off) = found.cut_off(plan.time) {
+        if let Some(cut_off) = found.early_end(plan.time) {
             let wall = EstimateCheck {
                 what: "wall time of a run".to_owned(),
                 estimated: plan.seconds.likely,
@@ -302,7 +310,7 @@ impl ExplainVerb {
                 actual: found.mean_over(window) - mean,
                 unit: plan.unit.to_owned(),
                 is_within: (found.mean_over(window) - mean).abs()
-                    <= plan.expected.bias.with(chance.hypot(bar)),
+                    <= plan.expected.bias.with_statistical_error(chance.hypot(bar)),
                 advice: "bias from the step or the precision: use --patient",
             });
         }
@@ -316,7 +324,7 @@ impl ExplainVerb {
                 is_within: known.bar <= chance,
                 advice: "trials were too short to estimate the scatter: use --patient",
             });
-            let allowed = plan.expected.bias.with(known.bar.hypot(bar));
+            let allowed = plan.expected.bias.with_statistical_error(known.bar.hypot(bar));
             rows.push(EstimateCheck {
                 what: format!("mean {}, minus reference", plan.quantity),
                 estimated: 0.0,
@@ -330,7 +338,7 @@ impl ExplainVerb {
     }
 }
 
-fn table(rows: &[EstimateCheck], cut_off: Option<String>) -> String {
+fn analysis_table(rows: &[EstimateCheck], cut_off: Option<String>) -> String {
     let number = |of: fn(&EstimateCheck) -> f64| {
         move |it: &&EstimateCheck| with_unit(&significant(of(it), 3), &it.unit)
     };
@@ -355,7 +363,7 @@ fn table(rows: &[EstimateCheck], cut_off: Option<String>) -> String {
 }
 
 /// Failure of a plan; stopped trials end like any interrupted command.
-pub(super) fn failed(error: impl Into<ExplainError>) -> CommandFailure {
+pub(super) fn plan_failure(error: impl Into<ExplainError>) -> CommandFailure {
     match error.into() {
         ExplainError::Stopped => CommandFailure::Stopped(signals::ProcessEnd::Whole),
         error => StudyError::Own(Box::new(error)).into(),

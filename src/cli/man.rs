@@ -34,14 +34,14 @@ impl ManVerb {
         // The text that help shows below the options is added as sections.
         let page = Man::new(page.after_help(None::<&str>).after_long_help(None::<&str>));
         page.render(&mut text)
-            .and_then(|()| below(parts).to_writer(&mut text))
+            .and_then(|()| extra_sections(parts).to_writer(&mut text))
             .map_err(CommandFailure::writing("the manual page"))?;
         print(&String::from_utf8_lossy(&text))
     }
 }
 
 /// Sections below the options: examples, exit codes, environment.
-fn below(parts: Vec<manual::HelpSection>) -> Roff {
+fn extra_sections(parts: Vec<manual::HelpSection>) -> Roff {
     let mut page = Roff::new();
     for (heading, entries) in parts {
         page.control("SH", [heading.to_uppercase().as_str()]);

@@ -10,14 +10,14 @@ use stripmine_physics::words::nearest;
 const MOST: usize = 3;
 
 /// Adds a suggestion to an argument error that the parser has none for.
-pub(super) fn advised(
+pub(super) fn with_suggestion(
     mut mistake: clap::Error,
     arguments: &[OsString],
     command: &clap::Command,
     methods: Methods,
 ) -> clap::Error {
     let words: Vec<&str> = arguments.iter().skip(1).filter_map(|word| word.to_str()).collect();
-    let verb = verb(command, &words);
+    let verb = innermost_verb(command, &words);
     match mistake.kind() {
         ErrorKind::InvalidSubcommand if mistake.get(ContextKind::SuggestedSubcommand).is_none() => {
             let Some(ContextValue::String(found)) = mistake.get(ContextKind::InvalidSubcommand) else {
@@ -33,7 +33,7 @@ pub(super) fn advised(
             let Some(ContextValue::String(found)) = mistake.get(ContextKind::InvalidArg) else {
                 return mistake;
             };
-            if let Some(tip) = of_key(found, &words, methods) {
+            if let Some(tip) = key_suggestion(found, &words, methods) {
                 mistake.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
                 // The parser's similar option is a worse guess.
                 mistake.remove(ContextKind::SuggestedArg);
@@ -45,12 +45,12 @@ pub(super) fn advised(
 }
 
 /// Innermost verb named by the words.
-fn verb<'c>(command: &'c clap::Command, words: &[&str]) -> &'c clap::Command {
+fn innermost_verb<'c>(command: &'c clap::Command, words: &[&str]) -> &'c clap::Command {
     words.iter().fold(command, |verb, word| verb.find_subcommand(word).unwrap_or(verb))
 }
 
 /// Suggestion to set the scene keys whose name is the option's.
-fn of_key(found: &str, words: &[&str], methods: Methods) -> Option<String> {
+fn key_suggestion(found: &str, words: &[&str], methods: Methods) -> Option<String> {
     let name = found.trim_start_matches('-').split('=').next().unwrap_or_default().replace('-', "_");
     let keys = methods.iter().flat_map(|method| method.vocabulary.keys.keys());
     let paths: BTreeSet<String> = keys

@@ -17,7 +17,7 @@ mod run;
 mod scene;
 
 use crate::console::Verb;
-use crate::console::{CommandFailure, Common, MOST_THREADS, clear_progress, print_answer, tell};
+use crate::console::{CommandFailure, Common, MOST_THREADS, clear_progress, print_answer, report_failure};
 use crate::laboratory::laboratories;
 use crate::laboratory::rates::{VERB, serve};
 use crate::provenance::command_line;
@@ -144,9 +144,9 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
     let as_data = arguments.iter().any(|argument| argument == "--json");
     let last_words = move |end| {
         clear_progress();
-        tell(&CommandFailure::Stopped(end), as_data);
+        report_failure(&CommandFailure::Stopped(end), as_data);
     };
-    let matches = understood(&arguments, methods);
+    let matches = parse_arguments(&arguments, methods);
     let verb = matches.as_ref().ok().and_then(Option::as_ref).and_then(ArgMatches::subcommand_name);
     let verb = verb.unwrap_or_default().to_owned();
     // Help and version join no other process. A process with wrong arguments joins the others to end them.
@@ -158,10 +158,10 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
                 // The handler waits in its own thread, the first thing to fail when memory is short.
                 let what = "the interrupt handler (a thread that takes some megabytes of memory)";
                 signals::install(last_words).map_err(CommandFailure::writing(what))?;
-                carried_out(&matches, &command_line(&arguments), session.crew(), methods)
+                execute_verb(&matches, &command_line(&arguments), session.crew(), methods)
             });
             clear_progress();
-            session.ended(outcome)
+            session.shared_outcome(outcome)
         }
         Some((Err(failure), Ok(_))) => Err(failure),
         Some((Err(_), Err(mistake))) => Err(mistake),
@@ -172,8 +172,8 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
         Err(failure) => {
             let code = failure.exit_code();
             // A failure of all processes is printed once.
-            if code != 0 && processes::is_first(&verb) {
-                tell(&failure, as_data);
+            if code != 0 && processes::prints_errors(&verb) {
+                report_failure(&failure, as_data);
             }
             ExitCode::from(code)
         }
@@ -181,7 +181,7 @@ pub fn run_with(arguments: impl Iterator<Item = OsString>, methods: Methods) -> 
 }
 
 /// Rejects an invalid number of threads in `RAYON_NUM_THREADS`.
-fn threads_of_environment() -> Result<(), CommandFailure> {
+fn check_environment_threads() -> Result<(), CommandFailure> {
     let Some(given) = std::env::var_os("RAYON_NUM_THREADS").filter(|given| !given.is_empty()) else {
         return Ok(());
     };
@@ -194,18 +194,18 @@ fn threads_of_environment() -> Result<(), CommandFailure> {
 }
 
 /// Parses the arguments; returns none after printing help or the version.
-fn understood(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatches>, CommandFailure> {
+fn parse_arguments(arguments: &[OsString], methods: Methods) -> Result<Option<ArgMatches>, CommandFailure> {
     let mut command = command(methods);
     match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => Ok(Some(matches)),
         Err(mistake) if mistake.use_stderr() => {
-            Err(CommandFailure::Arguments(meant::advised(mistake, arguments, &command, methods)))
+            Err(CommandFailure::Arguments(meant::with_suggestion(mistake, arguments, &command, methods)))
         }
         Err(answer) => print_answer(&answer).map(|()| None),
     }
 }
 
-fn carried_out(
+fn execute_verb(
     matches: &ArgMatches,
     command: &str,
     crew: RankBackend,
@@ -222,7 +222,7 @@ fn carried_out(
     // Without --threads the default pool has a thread for each core, or as many as the environment sets.
     let threads = common.threads.iter().copied().max().map_or(0, usize::from);
     if threads == 0 {
-        threads_of_environment()?;
+        check_environment_threads()?;
     }
     if let Some((verb, _)) =
         matches.subcommand().filter(|(verb, _)| *verb != "bench" && common.threads.len() > 1)
@@ -256,7 +256,7 @@ fn carried_out(
         }
         // Once all processes have begun, the first one reports an error of any.
         GeneralVerb::Chart(verb) if rank > 0 => match verb.run(&common, methods) {
-            Err(_) if processes::have_met() => Ok(()),
+            Err(_) if processes::has_exchanged() => Ok(()),
             outcome => outcome,
         },
         GeneralVerb::Chart(verb) => verb.run(&common, methods),

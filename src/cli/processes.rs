@@ -8,10 +8,10 @@ mod joining;
 
 #[cfg(feature = "mpi")]
 use crate::console::warn;
-use crate::console::{CommandFailure, tell};
+use crate::console::{CommandFailure, report_failure};
 use crate::laboratory::rates::VERB as MEASURE;
 use crate::study::StudyError;
-use agreement::{JointVerdict, ProcessState, agreed};
+use agreement::{JointVerdict, ProcessState, exchange_states};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use stripmine_physics::method::{DISMISSED, FailureKind, PhysicsFailure as Broken, RANK_ENDED};
@@ -44,7 +44,7 @@ struct LaunchedProcess {
 }
 
 /// Rank of this process, from the environment; none if it is the only one.
-fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<LaunchedProcess> {
+fn launched_process(variable: impl Fn(&str) -> Option<String>) -> Option<LaunchedProcess> {
     let number = |name: &str| variable(name)?.trim().parse::<usize>().ok();
     LAUNCHERS.iter().find_map(|launcher| {
         let (count, rank) = (number(launcher.size)?, number(launcher.rank)?);
@@ -52,13 +52,13 @@ fn launched(variable: impl Fn(&str) -> Option<String>) -> Option<LaunchedProcess
     })
 }
 
-fn own_place() -> Option<LaunchedProcess> {
-    launched(|name| std::env::var(name).ok())
+fn own_process() -> Option<LaunchedProcess> {
+    launched_process(|name| std::env::var(name).ok())
 }
 
 /// Returns true if this process prints errors: the first one, the only one, or any that works independently.
-pub(super) fn is_first(verb: &str) -> bool {
-    ALONE.contains(&verb) || own_place().is_none_or(|place| place.rank == 0)
+pub(super) fn prints_errors(verb: &str) -> bool {
+    ALONE.contains(&verb) || own_process().is_none_or(|place| place.rank == 0)
 }
 
 const PROCESSES: FailureKind = FailureKind::new("processes");
@@ -76,7 +76,7 @@ impl ProcessSession {
     /// # Errors
     /// [`Failure`] if there are any and this program was built without MPI.
     pub(super) fn begin(verb: &str) -> Result<ProcessSession, CommandFailure> {
-        let Some(place) = own_place().filter(|_| !ALONE.contains(&verb)) else {
+        let Some(place) = own_process().filter(|_| !ALONE.contains(&verb)) else {
             return Ok(ProcessSession {
                 #[cfg(feature = "mpi")]
                 _session: None,
@@ -85,7 +85,7 @@ impl ProcessSession {
         };
         #[cfg(feature = "mpi")]
         return Ok(ProcessSession {
-            _session: joining::watched(stripmine_physics::ranks::mpi::Session::begin, waiting(place)),
+            _session: joining::with_timeouts(stripmine_physics::ranks::mpi::Session::begin, waiting(place)),
             crew: RankBackend::Processes(stripmine_physics::ranks::mpi::world),
         });
         #[cfg(not(feature = "mpi"))]
@@ -98,7 +98,7 @@ impl ProcessSession {
     }
 
     /// Outcome of this process, shared with all others. A process that could not begin ends all of them, so that none waits for it.
-    pub(super) fn ended(&self, outcome: Result<(), CommandFailure>) -> Result<(), CommandFailure> {
+    pub(super) fn shared_outcome(&self, outcome: Result<(), CommandFailure>) -> Result<(), CommandFailure> {
         let RankBackend::Processes(join) = self.crew else { return outcome };
         let part = match &outcome {
             Err(failure) if failure.exit_code() != 0 => ProcessState::refused(failure),
@@ -135,7 +135,7 @@ fn abort(code: u8) -> ! {
 static HAVE_MET: AtomicBool = AtomicBool::new(false);
 
 /// Returns true once all processes have begun, or ended, together.
-pub(super) fn have_met() -> bool {
+pub(super) fn has_exchanged() -> bool {
     HAVE_MET.load(Ordering::SeqCst)
 }
 
@@ -144,7 +144,7 @@ fn first_exchange(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdict,
     if HAVE_MET.swap(true, Ordering::SeqCst) {
         return Ok(JointVerdict::Own);
     }
-    agreed(ranks, part).map_err(lost)
+    exchange_states(ranks, part).map_err(lost_rank_failure)
 }
 
 /// Begins joint work if every process can begin and has the same `same`. Each process calls this before its first message.
@@ -182,9 +182,9 @@ fn waiting(
         }
     };
     let ends = move || {
-        let failure = broken(words(notice + end), &remedy);
+        let failure = process_failure(words(notice + end), &remedy);
         if says {
-            tell(&failure, false);
+            report_failure(&failure, false);
         }
         std::process::exit(failure.exit_code().into());
     };
@@ -203,20 +203,20 @@ fn without_mpi(LaunchedProcess { count, variable, .. }: LaunchedProcess) -> Comm
         "build it with cargo build --release --features mpi, or use threads as ranks (run --ranks), or unset {variable} \
          if each process works independently"
     );
-    broken(what, &remedy)
+    process_failure(what, &remedy)
 }
 
-fn broken(what: String, remedy: &str) -> CommandFailure {
+fn process_failure(what: String, remedy: &str) -> CommandFailure {
     StudyError::Own(Box::new(Broken::new(PROCESSES, what, remedy))).into()
 }
 
 /// Failure for a lost rank.
-pub(super) fn lost(lost: RankError) -> CommandFailure {
-    broken(lost.to_string(), "see its last message")
+pub(super) fn lost_rank_failure(lost: RankError) -> CommandFailure {
+    process_failure(lost.to_string(), "see its last message")
 }
 
 /// Failure of another rank, with its exit code and message.
-pub(super) fn of_rank(rank: usize, code: u8, said: &str) -> CommandFailure {
+pub(super) fn rank_failure(rank: usize, code: u8, said: &str) -> CommandFailure {
     CommandFailure::OfProcess {
         process: format!("rank {rank}"),
         class: ErrorClass::of_exit_code(code),
@@ -230,15 +230,15 @@ pub(super) fn rank(crew: RankBackend) -> usize {
 }
 
 /// Failure for ranks requested both as threads and as processes.
-pub(super) fn ranks_twice() -> CommandFailure {
+pub(super) fn duplicate_ranks_failure() -> CommandFailure {
     let what = "--ranks was given, but this is already one of several processes".to_owned();
-    broken(what, "use --ranks without mpiexec, or mpiexec -n without --ranks")
+    process_failure(what, "use --ranks without mpiexec, or mpiexec -n without --ranks")
 }
 
 /// Serves simulations begun by `start` on a rank other than the first, until the first dismisses it.
 pub(super) fn serve(crew: RankBackend, start: impl FnOnce() -> Result<(), Broken>) {
     let RankBackend::Processes(join) = crew else { return };
-    let Err(failure) = ranks::over(crew, start) else { return };
+    let Err(failure) = ranks::with_backend(crew, start) else { return };
     // If the first rank has begun nothing, it failed for the same reason and reports it. Otherwise it waits for this rank; so do
     // others, if this rank lost one of them in the middle of a step.
     let is_waited_for = match failure.kind {
@@ -249,7 +249,7 @@ pub(super) fn serve(crew: RankBackend, start: impl FnOnce() -> Result<(), Broken
     if is_waited_for {
         let failure = CommandFailure::from(StudyError::Own(Box::new(failure)));
         let code = failure.exit_code();
-        tell(&of_rank(join().rank(), code, &failure.words()), false);
+        report_failure(&rank_failure(join().rank(), code, &failure.message_text()), false);
         abort(code);
     }
 }
@@ -258,7 +258,7 @@ pub(super) fn serve(crew: RankBackend, start: impl FnOnce() -> Result<(), Broken
 ///
 /// # Errors
 /// [`Failure`] of the rank itself, or of [`begin`] if scenes or programs differ.
-pub(super) fn together(
+pub(super) fn run_jointly(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
     first: impl FnOnce() -> Result<(), CommandFailure>,
@@ -268,7 +268,7 @@ pub(super) fn together(
     begin(ranks.as_ref(), same)?;
     if ranks.rank() == 0 {
         let outcome = first();
-        dismiss(ranks.as_ref()).map_err(lost)?;
+        dismiss(ranks.as_ref()).map_err(lost_rank_failure)?;
         return outcome;
     }
     serve();
@@ -279,7 +279,7 @@ pub(super) fn together(
 ///
 /// # Errors
 /// The rank's own failure; on the first rank also that of another; or that of [`begin`].
-pub(super) fn apart(
+pub(super) fn run_independently(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
     mut work: impl FnMut(usize, usize) -> Result<(), CommandFailure>,
@@ -287,11 +287,11 @@ pub(super) fn apart(
     let ranks = join();
     begin(ranks.as_ref(), same)?;
     let outcome = work(ranks.rank(), ranks.count());
-    let said = outcome.as_ref().err().map(|failure| (failure.exit_code(), failure.words()));
-    let all = ranks.gather_messages(said).map_err(lost)?;
+    let said = outcome.as_ref().err().map(|failure| (failure.exit_code(), failure.message_text()));
+    let all = ranks.gather_messages(said).map_err(lost_rank_failure)?;
     outcome?;
     let failed = all.into_iter().enumerate().find_map(|(rank, said)| Some((rank, said?)));
-    failed.map_or(Ok(()), |(rank, (code, words))| Err(of_rank(rank, code, &words)))
+    failed.map_or(Ok(()), |(rank, (code, words))| Err(rank_failure(rank, code, &words)))
 }
 
 #[cfg(test)]
@@ -329,7 +329,7 @@ mod tests {
             let value = |name: &str| {
                 variables.iter().find(|(known, _)| *known == name).map(|(_, value)| (*value).to_owned())
             };
-            let found = launched(value).map(|place| (place.rank, place.count));
+            let found = launched_process(value).map(|place| (place.rank, place.count));
             assert_eq!(found, expected, "{variables:?}");
         }
     }

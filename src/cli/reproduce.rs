@@ -1,7 +1,7 @@
 //! `stripmine reproduce`: makes the items of the report.
 
 use super::{items_of, processes};
-use crate::console::{CommandFailure, Common, SHARES, bar, clear_progress, print_json, say};
+use crate::console::{CommandFailure, Common, SHARES, bar, clear_progress, print_json, print_message};
 use crate::provenance::{Provenance, built};
 use crate::report::Chapter;
 use crate::results::{Folder, Item, StudyEnvironment, StudySize};
@@ -12,7 +12,7 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stripmine_physics::method::Methods;
-use stripmine_physics::number::{counted, significant};
+use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{RankBackend, Ranks};
 use stripmine_physics::signals;
@@ -69,8 +69,8 @@ impl Reproduce {
         let RankBackend::Processes(join) = common.crew else { return self.make(None, common, methods) };
         let ranks = join();
         let first = || self.make(Some(ranks.as_ref()), common, methods);
-        processes::together(join, &format!("{}\n{:?}", common.command, built()), first, || {
-            self.help(ranks.as_ref(), common, methods)
+        processes::run_jointly(join, &format!("{}\n{:?}", common.command, built()), first, || {
+            self.make_assigned_items(ranks.as_ref(), common, methods)
         })
     }
 
@@ -80,21 +80,21 @@ impl Reproduce {
         common: &Common,
         methods: Methods,
     ) -> Result<(), CommandFailure> {
-        let effort = self.effort();
+        let effort = self.study_size();
         let mut all: Vec<&'static Item> = items_of(methods).collect();
         all.sort_by_key(|item| item.chapter());
         let on_page: Vec<&str> = all.iter().map(|item| item.name).collect();
-        let (asked, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|item| self.asks(item));
+        let (asked, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|item| self.is_requested(item));
         let names: Vec<&str> = asked.iter().map(|item| item.name).collect();
         let folder = Folder::open(&self.out, &names, true)?;
-        let items = self.left(common, &folder, asked)?;
+        let items = self.remaining_items(common, &folder, asked)?;
         let expected: f64 = items.iter().map(|item| item.seconds(effort)).sum();
         let bar = bar(common, ticks(expected), SHARES);
         if !common.quiet && items.len() > 1 {
-            say(format_args!(
+            print_message(format_args!(
                 "{} will take about {}",
-                counted(items.len(), "item", "items"),
-                lasting(expected)
+                count_with_noun(items.len(), "item", "items"),
+                duration_text(expected)
             ));
             if effort == StudySize::Full && self.only.is_empty() {
                 let more = others.iter().map(|item| item.seconds(StudySize::All)).sum::<f64>()
@@ -102,10 +102,10 @@ impl Reproduce {
                         .iter()
                         .map(|item| item.seconds(StudySize::All) - item.seconds(effort))
                         .sum::<f64>();
-                say(format_args!(
+                print_message(format_args!(
                     "--all adds {} (beyond the papers, and of this host) and longer series: about {} more",
-                    counted(others.len(), "item", "items"),
-                    lasting(more)
+                    count_with_noun(others.len(), "item", "items"),
+                    duration_text(more)
                 ));
             }
         }
@@ -116,7 +116,7 @@ impl Reproduce {
             Some(ranks) => {
                 let (of_host, everywhere): (Vec<_>, Vec<_>) =
                     items.into_iter().partition(|item| item.chapter() == Chapter::Host);
-                let dealt = dealt_out(everywhere, ranks.count(), |item| item.seconds(effort));
+                let dealt = distribute(everywhere, ranks.count(), |item| item.seconds(effort));
                 let mut outcomes = job.make_together(ranks, &dealt)?;
                 outcomes.extend(job.make(&of_host)?);
                 outcomes
@@ -127,24 +127,24 @@ impl Reproduce {
     }
 
     /// Makes the items that the first process assigns to this one.
-    fn help(&self, ranks: &dyn Ranks, common: &Common, methods: Methods) {
-        let effort = self.effort();
-        let folder = Folder::of_another(&self.out);
-        while let Ok(Some(names)) = ranks.tell_message::<Option<ItemNames>>(None) {
+    fn make_assigned_items(&self, ranks: &dyn Ranks, common: &Common, methods: Methods) {
+        let effort = self.study_size();
+        let folder = Folder::opened_elsewhere(&self.out);
+        while let Ok(Some(names)) = ranks.broadcast_message::<Option<ItemNames>>(None) {
             let own = names.get(ranks.rank()).into_iter().flatten();
             let own: Vec<&'static Item> =
                 own.filter_map(|name| items_of(methods).find(|item| item.name == name)).collect();
             let bar = ProgressBar::hidden();
             let job = ItemJob { effort, common, folder: &folder, on_page: None, bar, before: Cell::new(0.0) };
             let made: ProcessOutcome =
-                job.make(&own).map_err(|failure| (failure.exit_code(), failure.words()));
+                job.make(&own).map_err(|failure| (failure.exit_code(), failure.message_text()));
             if ranks.gather_messages(made).is_err() {
                 return;
             }
         }
     }
 
-    fn effort(&self) -> StudySize {
+    fn study_size(&self) -> StudySize {
         match (self.quick, self.all) {
             (true, _) => StudySize::Quick,
             (false, true) => StudySize::All,
@@ -152,7 +152,7 @@ impl Reproduce {
         }
     }
 
-    fn asks(&self, item: &Item) -> bool {
+    fn is_requested(&self, item: &Item) -> bool {
         match self.only.as_slice() {
             [] if self.quick => item.is_quick(),
             [] => self.all || item.is_default(),
@@ -162,7 +162,7 @@ impl Reproduce {
 
     /// Items that remain to be made. If the same command of the same program made some of them here, but not all, it was
     /// interrupted and resumes.
-    fn left(
+    fn remaining_items(
         &self,
         common: &Common,
         folder: &Folder,
@@ -175,12 +175,12 @@ impl Reproduce {
         let mut made = vec![];
         for item in &asked {
             let there = folder.provenance(item.name)?;
-            made.push(there.is_some_and(|there| there.is_of_the_command(&here)));
+            made.push(there.is_some_and(|there| there.has_same_origin(&here)));
         }
         let number = asked.len();
-        let left = unfinished(asked, &made);
+        let left = unfinished_items(asked, &made);
         if left.len() < number && !common.quiet {
-            say(format_args!(
+            print_message(format_args!(
                 "keeping {} of {number} items that this command made before; to make them again, remove {}",
                 number - left.len(),
                 quoted::path(&self.out)
@@ -198,7 +198,7 @@ impl ItemJob<'_> {
 
     fn make_one(&self, item: &'static Item) -> Result<ItemOutcome, CommandFailure> {
         let (share, before) = (item.seconds(self.effort), self.before.get());
-        self.bar.set_message(format!("{}, about {}", item.name, lasting(share)));
+        self.bar.set_message(format!("{}, about {}", item.name, duration_text(share)));
         let (start, bar) = (Instant::now(), &self.bar);
         let progress = |part| bar.set_position(ticks(before + part * share));
         let lab = StudyEnvironment::apart(&progress);
@@ -207,20 +207,20 @@ impl ItemJob<'_> {
         let seconds = start.elapsed().as_secs_f64();
         // A finished item is written, also to the page, before the next one starts or a signal ends the program.
         let provenance = Provenance::here(self.common.command.clone(), seconds);
-        let (folder, section) = signals::whole(|| {
+        let (folder, section) = signals::run_protected(|| {
             let written = self.folder.write(item.name, &made, &provenance)?;
             self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items)).map(|()| written)
         })?;
-        let verdict = section.outcome();
+        let verdict = section.claim_summary();
         let folder = folder.to_string_lossy().into_owned();
         let outcome = ItemOutcome { item: item.name.to_owned(), verdict, seconds, folder };
-        self.say(&outcome);
+        self.print_outcome(&outcome);
         Ok(outcome)
     }
 
-    fn say(&self, ItemOutcome { item, verdict, seconds, folder }: &ItemOutcome) {
+    fn print_outcome(&self, ItemOutcome { item, verdict, seconds, folder }: &ItemOutcome) {
         if !self.common.quiet {
-            say(format_args!(
+            print_message(format_args!(
                 "{item:<20} {verdict:<18} {:>6} s  {}",
                 significant(*seconds, 3),
                 quoted::path(Path::new(folder))
@@ -236,13 +236,14 @@ impl ItemJob<'_> {
     ) -> Result<Vec<ItemOutcome>, CommandFailure> {
         let names: ItemNames =
             dealt.iter().map(|own| own.iter().map(|item| item.name.to_owned()).collect()).collect();
-        ranks.tell_message(Some(Some(names))).map_err(processes::lost)?;
+        ranks.broadcast_message(Some(Some(names))).map_err(processes::lost_rank_failure)?;
         let own = self.make(&dealt[0]);
-        let all: Vec<ProcessOutcome> = ranks.gather_messages(Ok(vec![])).map_err(processes::lost)?;
+        let all: Vec<ProcessOutcome> =
+            ranks.gather_messages(Ok(vec![])).map_err(processes::lost_rank_failure)?;
         let mut outcomes = own?;
         for (rank, made) in all.into_iter().enumerate() {
-            let made = made.map_err(|(code, words)| processes::of_rank(rank, code, &words))?;
-            made.iter().for_each(|outcome| self.say(outcome));
+            let made = made.map_err(|(code, words)| processes::rank_failure(rank, code, &words))?;
+            made.iter().for_each(|outcome| self.print_outcome(outcome));
             outcomes.extend(made);
         }
         self.on_page.as_ref().map_or(Ok(()), |items| self.folder.write_page(items))?;
@@ -251,7 +252,7 @@ impl ItemJob<'_> {
 }
 
 /// Distributes items evenly over `count` processes: the longest first, each to the process with the least work.
-fn dealt_out<T>(mut all: Vec<T>, count: usize, seconds: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
+fn distribute<T>(mut all: Vec<T>, count: usize, seconds: impl Fn(&T) -> f64) -> Vec<Vec<T>> {
     all.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)));
     let mut dealt: Vec<(f64, Vec<T>)> = (0..count).map(|_| (0.0, vec![])).collect();
     for one in all {
@@ -265,7 +266,7 @@ fn dealt_out<T>(mut all: Vec<T>, count: usize, seconds: impl Fn(&T) -> f64) -> V
 }
 
 /// Items left of an interrupted job; all items if none or all were made.
-fn unfinished<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
+fn unfinished_items<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
     if made.iter().all(|made| *made) {
         return items;
     }
@@ -273,7 +274,7 @@ fn unfinished<T>(items: Vec<T>, made: &[bool]) -> Vec<T> {
 }
 
 /// Duration for reading.
-fn lasting(seconds: f64) -> String {
+fn duration_text(seconds: f64) -> String {
     match seconds {
         ..1.5 => "a second".to_owned(),
         ..100.0 => format!("{seconds:.0} s"),
@@ -306,7 +307,7 @@ mod tests {
     /// Stated costs match the times recorded in the committed report within a factor of 1.5 and one second.
     #[test]
     fn stated_costs_match_the_committed_report() {
-        let folder = Folder::of_another(&Path::new(env!("CARGO_MANIFEST_DIR")).join("reports"));
+        let folder = Folder::opened_elsewhere(&Path::new(env!("CARGO_MANIFEST_DIR")).join("reports"));
         for item in items_of(METHODS) {
             let Some(made) = folder.provenance(item.name).unwrap() else { continue };
             // Costs are stated for release builds and for current templates.
@@ -326,20 +327,20 @@ mod tests {
 
     #[test]
     fn interrupted_jobs_resume_and_finished_jobs_restart() {
-        assert_eq!(unfinished(vec!["a", "b", "c"], &[true, false, true]), ["b"]);
+        assert_eq!(unfinished_items(vec!["a", "b", "c"], &[true, false, true]), ["b"]);
         for all in [true, false] {
-            assert_eq!(unfinished(vec!["a", "b"], &[all; 2]), ["a", "b"]);
+            assert_eq!(unfinished_items(vec!["a", "b"], &[all; 2]), ["a", "b"]);
         }
     }
 
     #[test]
     fn items_are_distributed_by_duration() {
-        let dealt = dealt_out(vec![1, 5, 2, 4, 3], 2, |seconds| f64::from(*seconds));
+        let dealt = distribute(vec![1, 5, 2, 4, 3], 2, |seconds| f64::from(*seconds));
         assert_eq!(dealt, [vec![5, 2, 1], vec![4, 3]]);
     }
 
     #[test]
     fn durations_are_rounded_for_reading() {
-        assert_eq!([0.1, 42.4, 99.0, 121.0].map(lasting), ["a second", "42 s", "99 s", "3 min"]);
+        assert_eq!([0.1, 42.4, 99.0, 121.0].map(duration_text), ["a second", "42 s", "99 s", "3 min"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::console::{CommandFailure, Common, print, print_json, warn};
 use crate::frame::{FormattedTable, FrameBuilder};
-use crate::laboratory::programs::counted;
+use crate::laboratory::programs::operation_frames;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
 use crate::report::terminal;
@@ -115,7 +115,7 @@ pub(super) fn presets(methods: Methods) -> impl Iterator<Item = &'static Preset>
     methods.iter().flat_map(|method| method.vocabulary.presets)
 }
 
-fn table(name: &str, facts: &[Fact], prepared: &Prepared) -> FormattedTable {
+fn scene_table(name: &str, facts: &[Fact], prepared: &Prepared) -> FormattedTable {
     let chosen = prepared.choices.iter().map(|choice| format!("chosen: {choice}"));
     let left_out = prepared.left_out.iter().map(|what| format!("left out: {what}"));
     let limits = prepared.step_limits.iter().map(|limit| format!("{}: {}", limit.name, limit.why));
@@ -136,12 +136,12 @@ fn check(name: &str, overrides: &[String], common: &Common, methods: Methods) ->
         prepared.warnings.iter().chain(&above).for_each(warn);
     }
     let mut facts = prepared.facts.clone();
-    facts.extend(forecast::of_the_step(&prepared));
-    facts.extend(forecast::of_the_files(&prepared));
-    facts.extend(forecast::of_the_time(&prepared));
-    facts.push(forecast::of_the_memory(&prepared));
+    facts.extend(forecast::step_forecast(&prepared));
+    facts.extend(forecast::output_forecast(&prepared));
+    facts.extend(forecast::time_forecast(&prepared));
+    facts.push(forecast::memory_forecast(&prepared));
     if !common.json {
-        return print(&terminal::render(&table(name, &facts, &prepared)));
+        return print(&terminal::render(&scene_table(name, &facts, &prepared)));
     }
     let mut data = Map::new();
     data.insert("scene".to_owned(), json!(name));
@@ -177,7 +177,7 @@ fn programs(
         return Err(StudyError::NoPrograms(name.to_owned()).into());
     }
     if !listing {
-        let frames = counted(name, &programs, std::slice::from_ref(machine));
+        let frames = operation_frames(name, &programs, std::slice::from_ref(machine));
         if common.json {
             let mut data = Map::from_iter(frames.iter().map(|frame| (frame.name.clone(), frame.json())));
             data.extend([("scene".to_owned(), json!(name)), ("note".to_owned(), json!(note))]);

@@ -1,7 +1,7 @@
 //! Failures of verbs, as messages and as the document that `--json` prints instead of a result.
 
 use super::MOST_THREADS;
-use super::output::{is_untouched, print_json, say};
+use super::output::{is_untouched, print_json, print_message};
 use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -142,7 +142,7 @@ struct FailureReport {
 }
 
 /// Reports a failure: as a message on standard error and, with `--json` and no output yet, as data on standard output.
-pub(crate) fn tell(failure: &CommandFailure, as_data: bool) {
+pub(crate) fn report_failure(failure: &CommandFailure, as_data: bool) {
     match failure {
         CommandFailure::Arguments(mistake) if is_plain(mistake) => {
             #[expect(
@@ -152,8 +152,8 @@ pub(crate) fn tell(failure: &CommandFailure, as_data: bool) {
             let _ = mistake.print();
         }
         // The parser's messages begin with "error:" as ours do.
-        CommandFailure::Arguments(mistake) => say(mistake.render().to_string().trim_end()),
-        _ => say(format_args!("error: {failure}")),
+        CommandFailure::Arguments(mistake) => print_message(mistake.render().to_string().trim_end()),
+        _ => print_message(format_args!("error: {failure}")),
     }
     if as_data && is_untouched() {
         #[expect(
@@ -214,7 +214,7 @@ impl CommandFailure {
     }
 
     /// Message as `tell` prints it after "error: ".
-    pub fn words(&self) -> String {
+    pub fn message_text(&self) -> String {
         let text = match self {
             CommandFailure::Arguments(mistake) => mistake.render().to_string(),
             _ => self.to_string(),
@@ -238,7 +238,7 @@ impl CommandFailure {
                 details: None,
             };
         }
-        let text = self.words();
+        let text = self.message_text();
         // The remedy is a separate paragraph, or follows "help:".
         let (message, remedy) = match text.split_once("\n\n").or_else(|| text.split_once("\n  help: ")) {
             Some((message, remedy)) => (message, Some(remedy.trim().to_owned())),

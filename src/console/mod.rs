@@ -5,11 +5,11 @@ mod output;
 mod verb;
 
 pub use failure::CommandFailure;
-pub(crate) use failure::tell;
+pub(crate) use failure::report_failure;
 pub use output::is_untouched;
 pub(crate) use output::print_answer;
 pub(crate) use output::{
-    SHARES, STEPS, bar, clear_progress, print, print_json, progress, say, to_json, warn,
+    SHARES, STEPS, bar, clear_progress, print, print_json, print_message, progress, to_json, warn,
 };
 pub(crate) use verb::Verb;
 

@@ -17,21 +17,21 @@ static BEGUN: AtomicBool = AtomicBool::new(false);
 /// Progress bar on the screen.
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-fn shown() -> MutexGuard<'static, Option<ProgressBar>> {
+fn current_bar() -> MutexGuard<'static, Option<ProgressBar>> {
     BAR.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Writes a line to standard error, above the progress bar.
-pub(crate) fn say(message: impl Display) {
+pub(crate) fn print_message(message: impl Display) {
     let line = || {
-        let text = terminal::fitted(&quoted::message(&message.to_string()));
+        let text = terminal::wrap_message(&quoted::message(&message.to_string()));
         #[expect(
             clippy::let_underscore_must_use,
             reason = "if standard error is full or closed, nothing can be reported"
         )]
         let _ = writeln!(io::stderr().lock(), "{text}");
     };
-    let bar = shown().clone();
+    let bar = current_bar().clone();
     match bar {
         Some(bar) => bar.suspend(line),
         None => line(),
@@ -40,7 +40,7 @@ pub(crate) fn say(message: impl Display) {
 
 /// Writes a warning to standard error.
 pub(crate) fn warn(message: impl Display) {
-    say(format_args!("warning: {message}"));
+    print_message(format_args!("warning: {message}"));
 }
 
 /// Starts a progress bar with ETA on a terminal; hidden elsewhere.
@@ -56,7 +56,7 @@ pub(crate) fn bar(common: &Common, length: u64, template: &str) -> ProgressBar {
     if !bar.is_hidden() {
         bar.enable_steady_tick(TICK);
     }
-    *shown() = Some(bar.clone());
+    *current_bar() = Some(bar.clone());
     bar
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn progress(common: &Common, what: &'static str) -> ProgressBar {
 
 /// Removes the progress bar from the screen.
 pub(crate) fn clear_progress() {
-    if let Some(bar) = shown().take() {
+    if let Some(bar) = current_bar().take() {
         bar.finish_and_clear();
     }
 }
@@ -106,7 +106,7 @@ pub fn is_untouched() -> bool {
 /// # Errors
 /// [`Failure::StandardOutput`] if it cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), CommandFailure> {
-    write(|| io::stdout().write_all(quoted::shown(text).as_bytes()))
+    write(|| io::stdout().write_all(quoted::escaped_for_terminal(text).as_bytes()))
 }
 
 /// Writes the parser's help or version to standard output.

@@ -6,7 +6,7 @@ use minijinja::value::{Enumerator, Kwargs, Object, ObjectRepr, Value, from_args}
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, State, UndefinedBehavior};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use stripmine_physics::number::{counted, in_tens, range, significant, with_bar};
+use stripmine_physics::number::{count_with_noun, range, significant, with_error_bar, with_power_of_ten};
 
 /// Names available to an expression: the frames of an item.
 #[derive(Clone, Debug)]
@@ -142,7 +142,7 @@ impl Object for ResultFrame {
                             .args()
                             .map(|name| Ok(format!("{name} = {}", wanted.peek::<Value>(name)?)))
                             .collect::<Result<_, Error>>()?;
-                        let found = counted(rows.len(), "row", "rows");
+                        let found = count_with_noun(rows.len(), "row", "rows");
                         Err(failure(format!("table `{}` has {found} with {}", self.name, wanted.join(", "))))
                     }
                 }
@@ -193,17 +193,17 @@ impl Expressions {
         all.add_function("any", |values: Value| Ok::<_, Error>(values.try_iter()?.any(|it| it.is_true())));
         all.add_function("ln", f64::ln);
         all.add_function("sqrt", f64::sqrt);
-        all.add_function("with_bar", with_bar);
+        all.add_function("with_bar", with_error_bar);
         all.add_function("range", |values: Value, digits: usize| {
             Ok::<_, Error>(range(numbers(&values)?, digits))
         });
         all.add_filter("digits", significant);
-        all.add_filter("tens", in_tens);
+        all.add_filter("tens", with_power_of_ten);
         all.add_filter("fixed", |value: f64, decimals: usize| {
-            super::TableCell::Number(value, decimals).for_reading()
+            super::TableCell::Number(value, decimals).formatted_text()
         });
-        all.add_filter("count", |value: u64| super::TableCell::Count(value).for_reading());
-        all.add_filter("of", |count: u64, one: &str, many: &str| counted(count, one, many));
+        all.add_filter("count", |value: u64| super::TableCell::Count(value).formatted_text());
+        all.add_filter("of", |count: u64, one: &str, many: &str| count_with_noun(count, one, many));
         Expressions(all)
     }
 
@@ -212,8 +212,8 @@ impl Expressions {
     /// # Errors
     /// A sentence with the missing table or column, and the existing ones.
     pub fn value(&self, expression: &str, scope: &ExpressionScope) -> Result<Value, String> {
-        let compiled = self.0.compile_expression(expression).map_err(|cause| said(&cause, scope))?;
-        let value = compiled.eval(scope.value()).map_err(|cause| said(&cause, scope))?;
+        let compiled = self.0.compile_expression(expression).map_err(|cause| error_message(&cause, scope))?;
+        let value = compiled.eval(scope.value()).map_err(|cause| error_message(&cause, scope))?;
         match value.is_undefined() {
             true => Err(format!("`{expression}` does not exist; {}", scope.0.missing(expression))),
             false => Ok(value),
@@ -242,12 +242,12 @@ impl Expressions {
     /// The line within the text, and a sentence with the missing table or column, and the existing ones.
     pub fn text(&self, template: &str, scope: &ExpressionScope) -> Result<String, (usize, String)> {
         let filled = self.0.render_str(template, scope.value());
-        filled.map_err(|cause| (cause.line().unwrap_or(1), said(&cause, scope)))
+        filled.map_err(|cause| (cause.line().unwrap_or(1), error_message(&cause, scope)))
     }
 }
 
 /// Describes an error in a sentence, with the existing names where one is missing.
-fn said(cause: &Error, scope: &ExpressionScope) -> String {
+fn error_message(cause: &Error, scope: &ExpressionScope) -> String {
     let inner = std::error::Error::source(cause).map(ToString::to_string);
     let detail = cause.detail().map(str::to_owned).or(inner).unwrap_or_default();
     match cause.kind() {

@@ -2,7 +2,7 @@
 
 use super::{Digits, FrameValue};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::number::{in_tens, significant};
+use stripmine_physics::number::{significant, with_power_of_ten};
 
 /// Content of a cell of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,7 +49,7 @@ impl TableCell {
     }
 
     /// Formats the cell for reading, with grouped thousands.
-    pub(crate) fn for_reading(&self) -> String {
+    pub(crate) fn formatted_text(&self) -> String {
         match self {
             TableCell::Text(text) => text.clone(),
             TableCell::Count(count) => grouped(&count.to_string()),
@@ -62,7 +62,7 @@ impl TableCell {
                 format!("{} to {}", decimal(*lowest, *decimals), decimal(*highest, *decimals))
             }
             TableCell::Spread { value, range, decimals } => {
-                let range = TableCell::Range(*range, *decimals).for_reading();
+                let range = TableCell::Range(*range, *decimals).formatted_text();
                 format!("{} ({range})", decimal(*value, *decimals))
             }
             TableCell::Nothing => "–".to_owned(),
@@ -145,7 +145,7 @@ fn short(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
         1e-2..1e4 => significant(value, 2),
-        _ => in_tens(value, 2),
+        _ => with_power_of_ten(value, 2),
     }
 }
 
@@ -192,16 +192,16 @@ mod tests {
 
     #[test]
     fn numbers_are_grouped_for_people() {
-        assert_eq!(TableCell::Number(1_234_567.891, 2).for_reading(), "1\u{202f}234\u{202f}567.89");
-        assert_eq!(TableCell::Number(-123_456.0, 0).for_reading(), "-123\u{202f}456");
-        assert_eq!(TableCell::Count(999).for_reading(), "999");
+        assert_eq!(TableCell::Number(1_234_567.891, 2).formatted_text(), "1\u{202f}234\u{202f}567.89");
+        assert_eq!(TableCell::Number(-123_456.0, 0).formatted_text(), "-123\u{202f}456");
+        assert_eq!(TableCell::Count(999).formatted_text(), "999");
         let with_error = TableCell::WithError { value: 1234.56, error: 0.26, decimals: 1 };
-        assert_eq!(with_error.for_reading(), "1\u{202f}234.6 ± 0.3");
-        assert_eq!(TableCell::Range([0.18, 0.43], 2).for_reading(), "0.18 to 0.43");
+        assert_eq!(with_error.formatted_text(), "1\u{202f}234.6 ± 0.3");
+        assert_eq!(TableCell::Range([0.18, 0.43], 2).formatted_text(), "0.18 to 0.43");
         let spread = TableCell::Spread { value: 1.71, range: [1.28, 2.02], decimals: 1 };
-        assert_eq!(spread.for_reading(), "1.7 (1.3 to 2.0)");
+        assert_eq!(spread.formatted_text(), "1.7 (1.3 to 2.0)");
         assert_eq!(
-            [4.2e-4, 0.031, 12.0].map(|it| TableCell::Short(it).for_reading()),
+            [4.2e-4, 0.031, 12.0].map(|it| TableCell::Short(it).formatted_text()),
             ["4.2·10⁻⁴", "0.031", "12"]
         );
     }

@@ -10,7 +10,7 @@ pub(crate) mod programs;
 pub(crate) mod rates;
 mod running;
 
-use crate::console::{CommandFailure, Common, Verb, say};
+use crate::console::{CommandFailure, Common, Verb, print_message};
 use crate::provenance::Provenance;
 use crate::results::{FinishedItem, Folder, Item};
 use std::time::Instant;
@@ -44,16 +44,16 @@ pub(crate) fn laboratories(methods: Methods) -> impl Iterator<Item = &'static La
 }
 
 /// Writes the result of a verb that began at `start` to its folder and reports the path. Returns the paragraphs of its page.
-fn written(
+fn write_result(
     folder: &Folder,
     (name, made): (&str, &FinishedItem),
     start: Instant,
     common: &Common,
 ) -> Result<String, CommandFailure> {
     let provenance = Provenance::here(common.command.clone(), start.elapsed().as_secs_f64());
-    let (folder, section) = signals::whole(|| folder.write(name, made, &provenance))?;
+    let (folder, section) = signals::run_protected(|| folder.write(name, made, &provenance))?;
     if !common.quiet {
-        say(format_args!("written: {}", folder.display()));
+        print_message(format_args!("written: {}", folder.display()));
     }
     Ok(section.paragraphs().collect::<Vec<_>>().join(" "))
 }

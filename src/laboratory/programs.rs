@@ -12,7 +12,7 @@ use stripmine_physics::method::{Prepared, SectionCounts, VectorProgram};
 const MACHINES: [&str; 2] = ["cray-y-mp-el", "sx-aurora"];
 
 /// Operations of a step, and its time on some machines.
-pub(crate) fn counted(
+pub(crate) fn operation_frames(
     scene: &str,
     programs: &[VectorProgram],
     machines: &[MachineModel],
@@ -47,14 +47,14 @@ pub(crate) fn counted(
 }
 
 /// Item with the frames of some scenes, numbered in their order, and the listing of the first program.
-pub(crate) fn made(scenes: &[(&str, Prepared)]) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn programs_item(scenes: &[(&str, Prepared)]) -> Result<FinishedItem, CommandFailure> {
     let machines: Vec<MachineModel> =
         MACHINES.iter().map(|name| machines::preset(name)).collect::<Result<_, _>>()?;
     let mut made = FinishedItem::default().with_seeds([1]);
     for (number, (scene, prepared)) in (1..).zip(scenes) {
         let programs = prepared.model.programs();
         let numbered = |frame: ResultFrame| ResultFrame { name: format!("{}-{number}", frame.name), ..frame };
-        made.frames.extend(counted(scene, &programs, &machines).map(numbered));
+        made.frames.extend(operation_frames(scene, &programs, &machines).map(numbered));
         if number == 1
             && let Some(first) = programs.first()
         {

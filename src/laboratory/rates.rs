@@ -7,7 +7,7 @@
 mod case;
 mod process;
 
-pub(crate) use case::{CaseReading, RateCase, StudyWork, given};
+pub(crate) use case::{CaseReading, RateCase, StudyWork, parse_parameters};
 pub(crate) use process::{VERB, serve};
 
 use crate::console::CommandFailure;
@@ -60,32 +60,32 @@ impl MeasuredCase {
         MeasuredCase { labels: vec![], readings: readings.into_iter().collect() }
     }
 
-    fn each(&self, of: impl Fn(&CaseReading) -> f64) -> ProcessSpread {
+    fn spread_of_readings(&self, of: impl Fn(&CaseReading) -> f64) -> ProcessSpread {
         ProcessSpread::of(self.readings.iter().map(of))
     }
 
     /// Work per second.
     pub(crate) fn rate(&self) -> ProcessSpread {
-        self.each(|it| it.work / it.seconds)
+        self.spread_of_readings(|it| it.work / it.seconds)
     }
 
     /// Seconds per unit of work.
     pub(crate) fn cost(&self) -> ProcessSpread {
-        self.each(|it| it.seconds / it.work)
+        self.spread_of_readings(|it| it.seconds / it.work)
     }
 
     /// Seconds of a part per unit of work.
     pub(crate) fn part(&self, name: &str) -> ProcessSpread {
-        self.each(|it| it.parts.get(name).copied().unwrap_or(0.0) / it.work)
+        self.spread_of_readings(|it| it.parts.get(name).copied().unwrap_or(0.0) / it.work)
     }
 
     /// Operations of a kind per unit of work.
     pub(crate) fn count(&self, name: &str) -> f64 {
-        self.each(|it| it.counts.get(name).copied().unwrap_or(0.0) / it.work).median
+        self.spread_of_readings(|it| it.counts.get(name).copied().unwrap_or(0.0) / it.work).median
     }
 
     /// Ratio of the rate to that of another case, process by process.
-    pub(crate) fn over(&self, other: &MeasuredCase) -> ProcessSpread {
+    pub(crate) fn rate_ratio(&self, other: &MeasuredCase) -> ProcessSpread {
         let rate = |it: &CaseReading| it.work / it.seconds;
         ProcessSpread::of(
             self.readings.iter().zip(&other.readings).map(|(own, other)| rate(own) / rate(other)),
@@ -94,7 +94,7 @@ impl MeasuredCase {
 }
 
 /// Frame of the rates, one row per case in the given order, with the labels as columns. Every case has the labels of the first.
-pub(crate) fn frame(
+pub(crate) fn rate_frame(
     measured: &[MeasuredCase],
     (name, title): (&str, &str),
     (heading, scale, decimals): (&str, f64, usize),
@@ -108,14 +108,14 @@ pub(crate) fn frame(
 }
 
 /// Measures cases in [`PROCESSES`] processes, one after the other.
-pub(crate) fn rates(
+pub(crate) fn measure_rates(
     lab: &StudyEnvironment<'_>,
     cases: &[RateCase],
 ) -> Result<Vec<MeasuredCase>, CommandFailure> {
-    rounds(cases, lab.progress, |cases, heard| match &lab.program {
+    measure_rounds(cases, lab.progress, |cases, heard| match &lab.program {
         Some(program) => process::measure(program, cases, heard),
         None => cases.iter().try_for_each(|case| {
-            let reading = case.measure(&[]).map_err(|failure| (failure.class(), failure.words()))?;
+            let reading = case.measure(&[]).map_err(|failure| (failure.class(), failure.message_text()))?;
             heard(reading);
             Ok(())
         }),
@@ -123,7 +123,7 @@ pub(crate) fn rates(
 }
 
 /// Runs the rounds; `round` measures some cases in order and passes on each reading.
-fn rounds(
+fn measure_rounds(
     cases: &[RateCase],
     progress: &dyn Fn(f64),
     mut round: impl FnMut(&[&RateCase], &mut dyn FnMut(CaseReading)) -> Result<(), ProcessFailure>,
@@ -132,7 +132,7 @@ fn rounds(
     let mut all: Vec<MeasuredCase> = cases.iter().map(labelled).collect();
     let rounds = if cases.is_empty() { 0 } else { PROCESSES };
     for number in 0..rounds {
-        let order = order(cases.len(), number);
+        let order = round_order(cases.len(), number);
         let in_order: Vec<&RateCase> = order.iter().map(|&at| &cases[at]).collect();
         let mut heard = 0;
         let outcome = round(&in_order, &mut |reading| {
@@ -151,7 +151,7 @@ fn rounds(
 }
 
 /// Order of the cases in a round: each round begins at a different case, and every second one runs backwards.
-fn order(cases: usize, round: usize) -> Vec<usize> {
+fn round_order(cases: usize, round: usize) -> Vec<usize> {
     let start = round * cases / PROCESSES;
     let place = |step: usize| if round % 2 == 1 { start + cases - step } else { start + step };
     (0..cases).map(|step| place(step) % cases).collect()
@@ -181,7 +181,7 @@ mod tests {
             let (orders, shares) = (RefCell::new(vec![]), RefCell::new(vec![]));
             let progress = |share| shares.borrow_mut().push(share);
             // Times by the case and the round.
-            let all = rounds(&cases(count), &progress, |cases, heard| {
+            let all = measure_rounds(&cases(count), &progress, |cases, heard| {
                 let number = orders.borrow().len() as f64;
                 let at = |case: &RateCase| match case.labels[0].1 {
                     TableCell::Count(at) => at,
@@ -192,7 +192,7 @@ mod tests {
                 Ok(())
             });
             let all = all.unwrap();
-            let frame = frame(&all, ("rates", "Rates"), ("rate (1/s)", 1.0, 2));
+            let frame = rate_frame(&all, ("rates", "Rates"), ("rate (1/s)", 1.0, 2));
             let names: Vec<&str> = frame.columns.iter().map(|it| it.name.as_str()).collect();
             if count > 0 {
                 assert_eq!(names, ["case", "rate", "rate_lowest", "rate_highest", "processes"]);
@@ -227,9 +227,9 @@ mod tests {
             heard(reading(1.0));
             Err((Some(ErrorClass::Precondition), "disc 3 left the box".to_owned()))
         };
-        let failure = rounds(&cases(3), &|_| (), failed).unwrap_err();
+        let failure = measure_rounds(&cases(3), &|_| (), failed).unwrap_err();
         assert_eq!(failure.exit_code(), ErrorClass::Precondition.exit_code());
-        assert_eq!(failure.words(), "measuring case = 1: disc 3 left the box");
+        assert_eq!(failure.message_text(), "measuring case = 1: disc 3 left the box");
     }
 
     /// Two cases of one scene count the same work and operations, whatever their times.
@@ -239,14 +239,14 @@ mod tests {
         let events = |name: &str| RateCase::events("hard-disks", &discs, 50, 200).label("name", name);
         let steps = RateCase::steps("bench", &discs, 2, 3).label("name", "steps").on_threads(2);
         let lab = StudyEnvironment::here(&|_| ());
-        let all = rates(&lab, &[events("a"), events("b"), steps]).unwrap();
+        let all = measure_rates(&lab, &[events("a"), events("b"), steps]).unwrap();
         let works = |at: usize| all[at].readings.iter().map(|it| it.work).collect::<Vec<_>>();
         assert_eq!([works(0), works(1)], [[200.0; PROCESSES]; 2]);
         assert_eq!(all[0].readings[0].counts, all[1].readings[2].counts);
         assert!(all[0].count("predictions") > 1.0);
         assert!(all[2].readings[0].parts.contains_key("forces") && works(2)[0] >= 3.0 * 64.0);
         assert!(all[2].part("forces").median <= all[2].cost().range[1]);
-        let [low, high] = all[0].over(&all[0]).range;
+        let [low, high] = all[0].rate_ratio(&all[0]).range;
         assert_eq!((low, high), (1.0, 1.0));
     }
 
@@ -254,8 +254,8 @@ mod tests {
     fn a_rejected_scene_names_its_case() {
         let none = Overrides::new().set(&COUNT, 0_u64);
         let case = RateCase::steps("bench", &none, 0, 1).label("discs", 0);
-        let failure = rates(&StudyEnvironment::here(&|_| ()), &[case]).unwrap_err();
+        let failure = measure_rates(&StudyEnvironment::here(&|_| ()), &[case]).unwrap_err();
         assert_eq!(failure.exit_code(), ErrorClass::Input.exit_code());
-        assert!(failure.words().starts_with("measuring discs = 0: "), "{}", failure.words());
+        assert!(failure.message_text().starts_with("measuring discs = 0: "), "{}", failure.message_text());
     }
 }

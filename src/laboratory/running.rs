@@ -11,7 +11,7 @@ use stripmine_physics::method::{
 use stripmine_physics::scene::Overrides;
 
 /// Prepares a preset with overrides.
-pub(crate) fn prepared(preset: &str, overrides: &Overrides) -> Result<Prepared, StudyError> {
+pub(crate) fn prepare_preset(preset: &str, overrides: &Overrides) -> Result<Prepared, StudyError> {
     Ok(load(preset, &overrides.texts(), METHODS)?.0)
 }
 
@@ -25,7 +25,7 @@ pub(crate) fn on_threads<T: Send>(
 }
 
 /// Bisects a range whose lower end satisfies `holds` and whose upper end does not, by the `middle` of both ends, until it `is_narrow`.
-pub(crate) fn bisected<T: Copy, E>(
+pub(crate) fn bisect_range<T: Copy, E>(
     mut range: [T; 2],
     is_narrow: impl Fn([T; 2]) -> bool,
     middle: impl Fn(T, T) -> T,
@@ -55,7 +55,7 @@ impl RunningScene {
     }
 
     /// Starts a preset with overrides for timing: only quantities that the motion needs are tracked.
-    pub(crate) fn timed(preset: &str, overrides: &Overrides) -> Result<RunningScene, StudyError> {
+    pub(crate) fn begin_timed(preset: &str, overrides: &Overrides) -> Result<RunningScene, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
         RunningScene::of(method, &prepared, StartPurpose::Measurement)
     }
@@ -72,22 +72,22 @@ impl RunningScene {
     }
 
     /// Advances by some steps.
-    pub(super) fn steps(&mut self, steps: u64) -> Result<(), method::PhysicsFailure> {
-        self.until(Until::Steps(steps).after(&self.simulation.clock()))
+    pub(super) fn advance_steps(&mut self, steps: u64) -> Result<(), method::PhysicsFailure> {
+        self.advance_until(Until::Steps(steps).after(&self.simulation.clock()))
     }
 
     /// Advances by some events.
-    pub(super) fn events(&mut self, events: u64) -> Result<(), method::PhysicsFailure> {
-        self.until(Until::Events(events).after(&self.simulation.clock()))
+    pub(super) fn advance_events(&mut self, events: u64) -> Result<(), method::PhysicsFailure> {
+        self.advance_until(Until::Events(events).after(&self.simulation.clock()))
     }
 
     /// Advances to a moment.
-    pub(super) fn until(&mut self, moment: Until) -> Result<(), method::PhysicsFailure> {
+    pub(super) fn advance_until(&mut self, moment: Until) -> Result<(), method::PhysicsFailure> {
         self.simulation.advance(&[moment], &AtomicBool::new(false))
     }
 
     /// Probability of the Kolmogorov–Smirnov test that the velocity components have Maxwell's distribution at kT/m = `temperature`.
-    pub(crate) fn maxwell(&self, temperature: f64) -> f64 {
+    pub(crate) fn maxwell_probability(&self, temperature: f64) -> f64 {
         let particles = self.simulation.particles();
         let components = particles.grains().iter().flat_map(|it| it.planar_velocity());
         let scaled = components.map(|v| v / temperature.sqrt()).collect();
@@ -95,7 +95,7 @@ impl RunningScene {
     }
 
     /// Present values of some observables, by name.
-    pub(super) fn observed<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
+    pub(super) fn observed_values<const N: usize>(&self, names: [&str; N]) -> Result<[f64; N], UnknownName> {
         observed(self.quantities, &self.simulation.observe(), names)
     }
 }

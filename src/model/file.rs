@@ -123,7 +123,7 @@ impl<T: DeserializeOwned> FileKind<T> {
         };
         mistakes.extend(entries.iter().filter_map(wrong));
         let read = deserialized(&text, table, &entries, &mut mistakes);
-        mistakes.none_of(file)?;
+        mistakes.ok_without_mistakes(file)?;
         (self.completed)(read?).map_err(|(path, what)| {
             let entry = entries.iter().find(|it| it.path() == path);
             text.spot(entry.map_or(0, FileEntry::at)).error(MistakeKind::Contradiction, what).into()

@@ -8,7 +8,7 @@ use stripmine_physics::input::InputErrors;
 use toml::de::DeValue;
 
 const KIND: FileKind<MachineModel> =
-    FileKind { format: 1, remedy: None, wrong, completed: MachineModel::completed };
+    FileKind { format: 1, remedy: None, wrong: machine_entry_error, completed: MachineModel::completed };
 /// Largest number of operations in an expansion; clocks process them one by one.
 const LONGEST_EXPANSION: u64 = 10_000;
 
@@ -95,34 +95,34 @@ fn class_of(name: &str) -> Option<OpClass> {
 }
 
 /// Describes an error of a single entry, if any.
-fn wrong(entry: &FileEntry<'_>) -> Option<String> {
+fn machine_entry_error(entry: &FileEntry<'_>) -> Option<String> {
     let path = entry.path();
     match (&entry.names[..], entry.value) {
         ([.., "note"], DeValue::String(note)) if note.trim().is_empty() => {
             let of = path.trim_end_matches(".note");
             Some(format!("the note of `{of}` is empty; expected the origin of the number"))
         }
-        (["start_up", name], _) if *name != DEFAULT => no_class(name, &path),
-        (["units", _, "serves"], DeValue::String(name)) => no_class(name, &path),
-        (["expansions", name], _) => no_class(name, &path),
+        (["start_up", name], _) if *name != DEFAULT => unknown_class_error(name, &path),
+        (["units", _, "serves"], DeValue::String(name)) => unknown_class_error(name, &path),
+        (["expansions", name], _) => unknown_class_error(name, &path),
         (["expansions", _, "steps"], DeValue::Table(steps)) if steps.is_empty() => {
             Some(format!("`{path}` has no steps"))
         }
-        (["expansions", _, "steps", name], _) => no_class(name, &path)
+        (["expansions", _, "steps", name], _) => unknown_class_error(name, &path)
             .or_else(|| (entry.number()? == 0.0).then(|| format!("`{path}` is 0, but must be positive"))),
-        ([of @ .., "value"], _) => unlikely(entry.number()?, of),
+        ([of @ .., "value"], _) => number_error(entry.number()?, of),
         _ => None,
     }
 }
 
-fn no_class(name: &str, path: &str) -> Option<String> {
+fn unknown_class_error(name: &str, path: &str) -> Option<String> {
     let known = || OpClass::ALL.iter().map(|class| class.name()).collect::<Vec<_>>().join(", ");
     let is_known = class_of(name).is_some();
     (!is_known).then(|| format!("`{path}`: `{name}` is not a class of operations; known are {}", known()))
 }
 
 /// Describes an error of a number, if any. The upper bounds keep the sum over a program finite.
-fn unlikely(value: f64, of: &[&str]) -> Option<String> {
+fn number_error(value: f64, of: &[&str]) -> Option<String> {
     let (most, is_counted) = match of.last() {
         Some(&"year") => (9999.0, true),
         Some(&"count" | &"length" | &"load_ports" | &"store_ports") => (1e6, true),

@@ -44,7 +44,7 @@ impl Reported for MachineError {
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         if let MachineError::File(errors) = self { Some(errors) } else { None }
     }
 

@@ -276,7 +276,7 @@ fn series(
         {
             continue;
         }
-        let place = (rows.place(&spec.x, row, across)?, rows.place(&spec.y, row, down)?);
+        let place = (rows.axis_coordinate(&spec.x, row, across)?, rows.axis_coordinate(&spec.y, row, down)?);
         let (Some(x), Some(y)) = place else { continue };
         let mut point = SeriesPoint::at(x, y);
         if let Some(error) = &spec.error
@@ -353,7 +353,7 @@ impl FigureRows<'_> {
     }
 
     /// Coordinate on an axis: a number, or the index of a name.
-    fn place(
+    fn axis_coordinate(
         &self,
         text: &TemplateText,
         row: usize,

@@ -43,7 +43,7 @@ impl MachineDescription {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             clock: field("cpu MHz").and_then(|clock| clock.parse().ok()),
             caches: (0..8).filter_map(|index| cache(&first.join(format!("cache/index{index}")))).collect(),
-            governor: word(&first.join("cpufreq/scaling_governor")),
+            governor: file_word(&first.join("cpufreq/scaling_governor")),
             is_virtual: field("flags").map(|flags| flags.split(' ').any(|flag| flag == "hypervisor")),
             compiler: env!("STRIPMINE_COMPILER").to_owned(),
         }
@@ -90,7 +90,7 @@ fn model(field: &dyn Fn(&str) -> Option<String>) -> Option<String> {
 
 /// Level, kind and size of a cache as the Linux kernel describes them.
 fn cache(folder: &Path) -> Option<String> {
-    let [level, kind, size] = ["level", "type", "size"].map(|name| word(&folder.join(name)));
+    let [level, kind, size] = ["level", "type", "size"].map(|name| file_word(&folder.join(name)));
     let kind = match kind?.as_str() {
         "Data" => "d",
         "Instruction" => "i",
@@ -99,7 +99,7 @@ fn cache(folder: &Path) -> Option<String> {
     Some(format!("L{}{kind} {}", level?, size?))
 }
 
-fn word(path: &Path) -> Option<String> {
+fn file_word(path: &Path) -> Option<String> {
     fs::read_to_string(path).ok().map(|text| text.trim().to_owned()).filter(|text| !text.is_empty())
 }
 

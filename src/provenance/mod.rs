@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::path::Path;
 use stripmine_kernels::InstructionSet;
-use stripmine_physics::number::counted;
+use stripmine_physics::number::count_with_noun;
 use stripmine_physics::origin::{Origin, today};
 use stripmine_physics::quoted;
 
@@ -103,7 +103,7 @@ impl Provenance {
     }
 
     /// Returns true if `reproduce` made it.
-    pub(crate) fn is_of_the_report(&self) -> bool {
+    pub(crate) fn is_from_reproduce(&self) -> bool {
         self.command.split(' ').nth(1) == Some("reproduce")
     }
 
@@ -118,20 +118,20 @@ impl Provenance {
     }
 
     /// Returns true if the same command of the same program, built from a commit or a release, made it on the same host.
-    pub(crate) fn is_of_the_command(&self, other: &Provenance) -> bool {
+    pub(crate) fn has_same_origin(&self, other: &Provenance) -> bool {
         let of = |it: &Provenance| (it.origin.clone(), it.command.clone(), it.machine.processor.clone());
         !other.origin.dirty && of(self) == of(other)
     }
 
     /// Phrase with date and program, to follow the number of items.
-    pub(crate) fn of_program(&self) -> String {
+    pub(crate) fn program_phrase(&self) -> String {
         let Origin { version, commit, dirty, .. } = &self.origin;
         let state = if *dirty { ", with changes that are in no commit" } else { "" };
         format!("made on {} by stripmine {version} of source commit {commit}{state}", self.date)
     }
 
     /// Phrase with instruction set and machine.
-    pub(crate) fn of_machine(&self) -> String {
+    pub(crate) fn machine_phrase(&self) -> String {
         format!("{}, on {}", self.instruction_set, self.machine.without_clock())
     }
 
@@ -147,7 +147,7 @@ impl Provenance {
         let state = if origin.dirty { " with changes" } else { "" };
         format!(
             "Made on {date} in {seconds:.1} s with {threads} threads in {} by `{command}`, source commit {}{state}.",
-            counted(processes, "process", "processes"),
+            count_with_noun(processes, "process", "processes"),
             origin.commit
         )
     }
@@ -157,10 +157,14 @@ impl Provenance {
 pub(crate) fn command_line(arguments: &[OsString]) -> String {
     let name = arguments.first().map(Path::new).and_then(Path::file_stem);
     let given = arguments.iter().skip(1).map(OsString::as_os_str);
-    name.into_iter().chain(given).map(|word| in_shell(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")
+    name.into_iter()
+        .chain(given)
+        .map(|word| shell_quoted(&word.to_string_lossy()))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
-fn in_shell(word: &str) -> String {
+fn shell_quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+:,./@%".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {
         true => word.to_owned(),

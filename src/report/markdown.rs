@@ -18,7 +18,7 @@ pub(crate) fn render(table: &FormattedTable, folder: &str) -> String {
     let rule = |i| if numeric(i) { "--:" } else { "---" }.to_owned();
     text.push_str(&line((0..table.columns.len()).map(rule).collect()));
     for row in &table.rows {
-        text.push_str(&line(row.iter().map(|cell| cell.for_reading().replace('|', "\\|")).collect()));
+        text.push_str(&line(row.iter().map(|cell| cell.formatted_text().replace('|', "\\|")).collect()));
     }
     text
 }

@@ -9,7 +9,7 @@ pub mod tally;
 pub(crate) mod terminal;
 
 use crate::provenance::Provenance;
-use stripmine_physics::number::counted;
+use stripmine_physics::number::count_with_noun;
 
 pub(crate) use crate::frame::FormattedTable;
 pub use crate::frame::{FrameBuilder, TableCell};
@@ -17,19 +17,20 @@ pub(crate) use section::Chapter;
 pub use section::Section;
 
 /// Sentences on the origin of the items, one for each machine, with the number of items by program, in decreasing order.
-fn origins(sections: &[Section]) -> Vec<String> {
+fn origin_sentences(sections: &[Section]) -> Vec<String> {
     let made = || sections.iter().filter_map(|section| section.provenance.as_ref());
     let of_machine = |(machine, _): (String, usize)| {
-        let here = made().filter(|it| it.of_machine() == machine);
-        let programs = counted_alike(here.map(Provenance::of_program)).into_iter();
-        let programs = programs.map(|(made, count)| format!("{} {made}", counted(count, "item", "items")));
+        let here = made().filter(|it| it.machine_phrase() == machine);
+        let programs = count_equal(here.map(Provenance::program_phrase)).into_iter();
+        let programs =
+            programs.map(|(made, count)| format!("{} {made}", count_with_noun(count, "item", "items")));
         format!("{}; {machine}.", programs.collect::<Vec<_>>().join("; "))
     };
-    counted_alike(made().map(Provenance::of_machine)).into_iter().map(of_machine).collect()
+    count_equal(made().map(Provenance::machine_phrase)).into_iter().map(of_machine).collect()
 }
 
 /// Counts equal texts, the most frequent first.
-fn counted_alike(texts: impl Iterator<Item = String>) -> Vec<(String, usize)> {
+fn count_equal(texts: impl Iterator<Item = String>) -> Vec<(String, usize)> {
     let mut counts: Vec<(String, usize)> = vec![];
     for text in texts {
         match counts.iter_mut().find(|(known, _)| *known == text) {

@@ -33,10 +33,10 @@ pub(crate) fn render(sections: &[Section], left_out: &[String], tally: &Tally) -
         let _ = write!(page, "\n**{}**\n\n| item | claims |\n|---|---|\n", chapter.title());
         for section in of_chapter {
             let title = &section.title;
-            let _ = writeln!(page, "| [{title}](#{}) | {} |", anchor(title), section.outcome());
+            let _ = writeln!(page, "| [{title}](#{}) | {} |", anchor(title), section.claim_summary());
         }
     }
-    for made in super::origins(sections) {
+    for made in super::origin_sentences(sections) {
         let _ = write!(page, "\n{made}\n");
     }
     for chapter in Chapter::ALL {
@@ -86,9 +86,9 @@ fn claims(tally: &Tally) -> String {
 /// Renders an item: the answer, the first picture and table, then the question. All else is on the HTML page.
 fn item(section: &Section) -> String {
     let Section { name, title, question, expected, .. } = section;
-    let again = section.again();
+    let again = section.reproduce_command();
     let folder = section.folder();
-    let mut text = format!("\n## {title}\n\n**{}**: {}\n\n", section.outcome(), section.answer);
+    let mut text = format!("\n## {title}\n\n**{}**: {}\n\n", section.claim_summary(), section.answer);
     if let Some(figure) = section.figures.first() {
         let caption = beginning(&figure.caption, CAPTION);
         let _ = write!(text, "![{}]({folder}/{}.svg)\n\n{caption}\n\n", figure.title, figure.name);

@@ -66,9 +66,9 @@ impl Section {
     }
 
     /// Command that reproduces the item: `reproduce` for an item of the report, the original command for a study.
-    pub(crate) fn again(&self) -> String {
+    pub(crate) fn reproduce_command(&self) -> String {
         match &self.provenance {
-            Some(made) if !made.is_of_the_report() => made.command.clone(),
+            Some(made) if !made.is_from_reproduce() => made.command.clone(),
             made => {
                 let is_all =
                     made.as_ref().is_some_and(|it| it.command.split(' ').any(|word| word == "--all"));
@@ -84,7 +84,7 @@ impl Section {
     }
 
     /// Number of claims by verdict, as text.
-    pub fn outcome(&self) -> String {
+    pub fn claim_summary(&self) -> String {
         let counts = self.counts().map(|(verdict, count)| format!("{count} {}", verdict.words()));
         let counts: Vec<String> = counts.collect();
         let counts = if counts.is_empty() { "no claim".to_owned() } else { counts.join(", ") };

@@ -29,14 +29,14 @@ fn columns(reported: usize) -> usize {
 }
 
 /// Wraps the lines of a message at blanks to the width of the terminal.
-pub(crate) fn fitted(message: &str) -> String {
-    fitted_within(message, width())
+pub(crate) fn wrap_message(message: &str) -> String {
+    wrap_message_within(message, width())
 }
 
-fn fitted_within(message: &str, width: Option<usize>) -> String {
+fn wrap_message_within(message: &str, width: Option<usize>) -> String {
     let Some(width) = width else { return message.to_owned() };
     let one = |line: &str| match line.chars().count() > width {
-        true => wrapped(line, width).trim_end().to_owned(),
+        true => wrap_paragraph(line, width).trim_end().to_owned(),
         false => line.to_owned(),
     };
     message.lines().map(one).collect::<Vec<_>>().join("\n")
@@ -45,7 +45,7 @@ fn fitted_within(message: &str, width: Option<usize>) -> String {
 /// Renders a table within a number of columns, or without a limit.
 pub(crate) fn render_within(table: &FormattedTable, width: Option<usize>) -> String {
     let rows: Vec<Vec<String>> =
-        table.rows.iter().map(|row| row.iter().map(TableCell::for_reading).collect()).collect();
+        table.rows.iter().map(|row| row.iter().map(TableCell::formatted_text).collect()).collect();
     let least: Vec<usize> = (0..table.columns.len())
         .map(|column| {
             let cells = rows.iter().filter_map(|row| row.get(column));
@@ -54,12 +54,12 @@ pub(crate) fn render_within(table: &FormattedTable, width: Option<usize>) -> Str
         .collect();
     let narrowest: usize = least.iter().map(|least| least + BESIDE).sum();
     let page = width.unwrap_or(PAGE);
-    let mut text = wrapped(&table.title, page);
+    let mut text = wrap_paragraph(&table.title, page);
     text += &match width {
         Some(width) if narrowest > width => records(table, &rows, width),
-        _ => drawn(table, rows, &least, width) + "\n",
+        _ => draw_table(table, rows, &least, width) + "\n",
     };
-    table.notes.iter().for_each(|note| text += &wrapped(note, page));
+    table.notes.iter().for_each(|note| text += &wrap_paragraph(note, page));
     text
 }
 
@@ -67,7 +67,12 @@ fn longest_word(text: &str) -> usize {
     text.split(' ').map(|word| word.chars().count()).max().unwrap_or(0)
 }
 
-fn drawn(table: &FormattedTable, rows: Vec<Vec<String>>, least: &[usize], width: Option<usize>) -> String {
+fn draw_table(
+    table: &FormattedTable,
+    rows: Vec<Vec<String>>,
+    least: &[usize],
+    width: Option<usize>,
+) -> String {
     let mut drawn = comfy_table::Table::new();
     // Rules around the table and below the headings, none between rows.
     drawn.load_style(UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none())).set_content_arrangement(
@@ -96,13 +101,13 @@ fn drawn(table: &FormattedTable, rows: Vec<Vec<String>>, least: &[usize], width:
 fn records(table: &FormattedTable, rows: &[Vec<String>], width: usize) -> String {
     let one = |row: &Vec<String>| {
         let lines = table.columns.iter().zip(row).filter(|(_, text)| !text.is_empty());
-        lines.map(|(column, text)| wrapped(&format!("  {column}: {text}"), width)).collect::<String>()
+        lines.map(|(column, text)| wrap_paragraph(&format!("  {column}: {text}"), width)).collect::<String>()
     };
     rows.iter().map(one).collect::<Vec<_>>().join("\n")
 }
 
 /// Wraps a paragraph at blanks; a longer word is not broken.
-fn wrapped(text: &str, width: usize) -> String {
+fn wrap_paragraph(text: &str, width: usize) -> String {
     let indent = text.chars().take_while(|c| *c == ' ').count();
     let (mut lines, mut line) = (String::new(), " ".repeat(indent));
     let mut is_empty = true;
@@ -151,10 +156,10 @@ mod tests {
     #[test]
     fn long_messages_are_wrapped_at_blanks() {
         let message = "error: a scene that cannot be\n  expected: dt below 0.0083249 (time), or slower discs\n    ^ here";
-        let text = fitted_within(message, Some(30));
+        let text = wrap_message_within(message, Some(30));
         assert!(text.lines().all(|line| line.chars().count() <= 30), "{text}");
         assert!(text.contains("0.0083249") && text.ends_with("\n    ^ here"), "{text}");
-        assert_eq!(fitted_within(message, None), message);
+        assert_eq!(wrap_message_within(message, None), message);
     }
 
     /// At any width every number and every word of a heading is unbroken, and no line is wider than requested.

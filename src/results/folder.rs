@@ -5,7 +5,7 @@
 
 use super::FinishedItem;
 use super::journal::{self, NAME as JOURNAL};
-use super::made::{self, LONGEST, bytes_of, files_of};
+use super::made::{self, LONGEST, read_file_bytes, section_and_files};
 use crate::claims;
 use crate::console::{CommandFailure, to_json};
 use crate::frame::ExpressionScope;
@@ -70,14 +70,14 @@ impl Folder {
     /// # Errors
     /// If its content is not ours, is committed while the source of this program is not, or another process writes to it.
     pub(crate) fn open(path: &Path, items: &[&str], pages: bool) -> Result<Folder, CommandFailure> {
-        traceable(path, &built())?;
+        check_traceable(path, &built())?;
         let pages = PAGES.iter().filter(|_| pages).map(|(name, _)| (*name).to_owned());
         let wanted: Vec<String> = items.iter().flat_map(|name| Section::folders(name)).chain(pages).collect();
         Ok(Folder(OwnedFolder::open(path, RESULTS, &wanted)?))
     }
 
     /// Folder that another process has opened, into which this one may write items.
-    pub fn of_another(path: &Path) -> Folder {
+    pub fn opened_elsewhere(path: &Path) -> Folder {
         Folder(OwnedFolder::of_another(path, RESULTS))
     }
 
@@ -96,7 +96,7 @@ impl Folder {
         if !made.repeated.is_empty() {
             provenance.repeated.clone_from(&made.repeated);
         }
-        let (section, files) = files_of(name, made, &provenance)?;
+        let (section, files) = section_and_files(name, made, &provenance)?;
         let mut listed = vec![PROVENANCE];
         listed.extend(files.iter().map(|(name, _)| name.as_str()));
         let list = to_json(&ProvenanceFile { provenance: &provenance, files: listed })? + "\n";
@@ -145,7 +145,8 @@ impl Folder {
             Some(page) => made::read(&folder, &page)?,
             None => None,
         };
-        let section = match made.map(|made| self.renewed(name, &folder, &made, &provenance)).transpose() {
+        let section = match made.map(|made| self.renew_section(name, &folder, &made, &provenance)).transpose()
+        {
             // The template of this version needs other tables.
             Err(_) if provenance.origin.version != built().version => None,
             section => section?,
@@ -156,14 +157,14 @@ impl Folder {
 
     /// Section of an item from its stored data and the current template. Files that the template changes are written again; the
     /// provenance of the data stays.
-    fn renewed(
+    fn renew_section(
         &self,
         name: &str,
         folder: &Path,
         made: &FinishedItem,
         provenance: &Provenance,
     ) -> Result<Section, CommandFailure> {
-        let (section, files) = files_of(name, made, provenance)?;
+        let (section, files) = section_and_files(name, made, provenance)?;
         let is_there = |(name, bytes): &(String, Vec<u8>)| {
             regular_file::read(&folder.join(name), LONGEST).is_ok_and(|there| there == *bytes)
         };
@@ -179,7 +180,7 @@ impl Folder {
     /// If it cannot be read.
     pub fn provenance(&self, name: &str) -> Result<Option<Provenance>, CommandFailure> {
         let Some(folder) = self.item(name) else { return Ok(None) };
-        Ok(serde_json::from_slice(&bytes_of(&folder.join(PROVENANCE))?).ok())
+        Ok(serde_json::from_slice(&read_file_bytes(&folder.join(PROVENANCE))?).ok())
     }
 
     /// Tables of an item, for expressions; none if the folder does not have it, or another version wrote it.
@@ -217,7 +218,7 @@ enum ItemState {
 }
 
 /// Refuses to overwrite committed results with results that no commit can reproduce.
-fn traceable(path: &Path, origin: &Origin) -> Result<(), UncommittedBuild> {
+fn check_traceable(path: &Path, origin: &Origin) -> Result<(), UncommittedBuild> {
     match !origin.is_committed() && is_committed(path) {
         true => Err(UncommittedBuild(path.to_owned())),
         false => Ok(()),
@@ -254,15 +255,15 @@ mod tests {
         git(&["init", "--quiet"]);
         git(&["add", "reports"]);
         let of = |dirty| Origin { commit: "1234567890ab".to_owned(), dirty, ..built() };
-        let refused = traceable(&kept, &of(true)).unwrap_err();
+        let refused = check_traceable(&kept, &of(true)).unwrap_err();
         assert_eq!(refused.0, kept);
         assert!(refused.to_string().contains("another --out"), "{refused}");
         assert_eq!(CommandFailure::from(refused).exit_code(), 2);
-        assert!(traceable(&kept, &of(false)).is_ok());
+        assert!(check_traceable(&kept, &of(false)).is_ok());
         fs::remove_dir_all(&kept).unwrap();
-        assert!(traceable(&kept, &of(true)).is_err());
+        assert!(check_traceable(&kept, &of(true)).is_err());
         // Any build may write to untracked and to new folders.
-        assert!(traceable(&scratch, &of(true)).is_ok());
-        assert!(traceable(&checkout.path().join("new"), &of(true)).is_ok());
+        assert!(check_traceable(&scratch, &of(true)).is_ok());
+        assert!(check_traceable(&checkout.path().join("new"), &of(true)).is_ok());
     }
 }

@@ -5,7 +5,7 @@
 //! is dropped silently.
 
 use super::journal_error::JournalError;
-use super::meter::{for_each_below, side_by_side};
+use super::meter::{for_each_below, run_in_parallel};
 use super::team::{ProcessTeam, RunResults};
 use crc32fast::Hasher;
 use serde::de::DeserializeOwned;
@@ -125,11 +125,11 @@ impl Journal {
         // The first process cleans the file before others read it, and nothing is added before all have read it.
         let first = team.is_first().then(|| Journal::read(folder, identity)).transpose()?;
         let own = RunResults::from([(identity.digest.clone(), Value::Null)]);
-        if team.exchanged(&own)? != own {
+        if team.exchange_runs(&own)? != own {
             return Err(JournalError::Differs);
         }
         let journal = first.map_or_else(|| Journal::read(folder, identity), Ok)?;
-        team.exchanged(&RunResults::new())?;
+        team.exchange_runs(&RunResults::new())?;
         Ok(Journal { team: Some(team), ..journal })
     }
 
@@ -145,7 +145,7 @@ impl Journal {
         let mut lines = text.split_inclusive('\n');
         let first = lines.next().unwrap_or(&heading);
         if first != heading {
-            return Err(refused(path, first, identity));
+            return Err(foreign_journal_error(path, first, identity));
         }
         let (mut known, mut kept, mut changed) = (RunResults::new(), heading, vec![]);
         for (number, line) in (2..).zip(lines) {
@@ -194,7 +194,7 @@ impl Journal {
     ///
     /// # Errors
     /// The first failure of a run, and [`JournalError`].
-    pub(crate) fn over<T, R, E>(
+    pub(crate) fn run_all<T, R, E>(
         &self,
         all: &[T],
         run: impl Fn(&T) -> Result<R, E> + Sync,
@@ -206,24 +206,24 @@ impl Journal {
     {
         if let Some(team) = &self.team {
             // A failure here occurs again below.
-            let part = team.part(all);
+            let part = team.own_share(all);
             for_each_below(part.len(), &|at| _ = run(part[at]));
             let made = std::mem::take(&mut *self.made.lock().unwrap_or_else(PoisonError::into_inner));
-            let runs = team.exchanged(&made).map_err(JournalError::from)?;
+            let runs = team.exchange_runs(&made).map_err(JournalError::from)?;
             self.known.write().unwrap_or_else(PoisonError::into_inner).extend(runs);
         }
-        side_by_side(all, run)
+        run_in_parallel(all, run)
     }
 
     /// Result of one process, broadcast to the others.
     ///
     /// # Errors
     /// As [`over`](Self::over).
-    pub(crate) fn once<R: Send, E: From<JournalError> + Send>(
+    pub(crate) fn run_on_one<R: Send, E: From<JournalError> + Send>(
         &self,
         run: impl Fn() -> Result<R, E> + Sync,
     ) -> Result<R, E> {
-        let mut found = self.over(&[()], |()| run())?;
+        let mut found = self.run_all(&[()], |()| run())?;
         Ok(found.swap_remove(0))
     }
 
@@ -255,22 +255,22 @@ impl Journal {
         T: Serialize + DeserializeOwned,
         E: From<JournalError>,
     {
-        if let Some(value) = self.found(key)
+        if let Some(value) = self.stored_value(key)
             && let Ok(value) = serde_json::from_value(value)
             && fits(&value)
         {
             return Ok(value);
         }
         let value = run()?;
-        self.keep(key, &value).map_err(JournalError::File)?;
+        self.store_value(key, &value).map_err(JournalError::File)?;
         Ok(value)
     }
 
-    fn found(&self, key: &str) -> Option<Value> {
+    fn stored_value(&self, key: &str) -> Option<Value> {
         self.known.read().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    fn keep(&self, key: &str, value: &impl Serialize) -> Result<(), FileError> {
+    fn store_value(&self, key: &str, value: &impl Serialize) -> Result<(), FileError> {
         let Some(file) = &self.file else { return Ok(()) };
         let line = serde_json::to_value(value).map(|value| JournalLine { key: key.to_owned(), value });
         if let (Some(_), Ok(JournalLine { key, value })) = (&self.team, &line) {
@@ -284,7 +284,7 @@ impl Journal {
 }
 
 /// Error for a journal whose first line differs from ours.
-fn refused(file: PathBuf, first: &str, ours: &JournalIdentity) -> JournalError {
+fn foreign_journal_error(file: PathBuf, first: &str, ours: &JournalIdentity) -> JournalError {
     let theirs = serde_json::from_str::<JournalIdentity>(first).ok().filter(|_| first.starts_with(MARK));
     let said =
         |it: &JournalIdentity| format!("{} ({})", it.of, it.digest.chars().take(8).collect::<String>());

@@ -27,7 +27,7 @@ const OF_FIGURE: &str = ".data";
 type NamedFile = (String, Vec<u8>);
 
 /// Section of an item, and its files except `provenance.json`. Claims belong to items of the report, not to studies of other scenes.
-pub(super) fn files_of(
+pub(super) fn section_and_files(
     name: &str,
     made: &FinishedItem,
     provenance: &Provenance,
@@ -36,7 +36,7 @@ pub(super) fn files_of(
     let section = match Page::of(name)? {
         Some(page) => {
             let shown = Shown { frames, pictures, film: film.as_ref(), files, seeds };
-            let claims = if provenance.is_of_the_report() { claims::all()? } else { vec![] };
+            let claims = if provenance.is_from_reproduce() { claims::all()? } else { vec![] };
             page.section(&shown, &claims, provenance.measured_on())?
         }
         None => Section::new(name, name),
@@ -50,12 +50,12 @@ pub(super) fn files_of(
         all.push((format!("{}.csv", frame.name), bytes));
     }
     let package = Package::of(&section.name, &section.title, seeds, &frames);
-    all.push((PACKAGE.to_owned(), compact(&package)?.into_bytes()));
+    all.push((PACKAGE.to_owned(), compact_json(&package)?.into_bytes()));
     for figure in &section.figures {
         all.push((format!("{}.svg", figure.name), svg(figure)?.into_bytes()));
     }
     if let Some(film) = film {
-        all.push((FILM.to_owned(), compact(film)?.into_bytes()));
+        all.push((FILM.to_owned(), compact_json(film)?.into_bytes()));
     }
     all.extend(files.iter().map(|(name, text)| (name.clone(), text.clone().into_bytes())));
     Ok((section, all))
@@ -67,7 +67,7 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<FinishedItem>, C
         return Ok(None);
     }
     let text = |name: &str| {
-        Ok::<_, CommandFailure>(String::from_utf8_lossy(&bytes_of(&folder.join(name))?).into_owned())
+        Ok::<_, CommandFailure>(String::from_utf8_lossy(&read_file_bytes(&folder.join(name))?).into_owned())
     };
     let Ok(package) = serde_json::from_str::<Package>(&text(PACKAGE)?) else { return Ok(None) };
     let mut made = FinishedItem { seeds: package.seeds, ..FinishedItem::default() };
@@ -79,7 +79,7 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<FinishedItem>, C
         if name.ends_with(OF_FIGURE) && !has_picture(&name) {
             continue;
         }
-        let bytes = bytes_of(&folder.join(&resource.path))?;
+        let bytes = read_file_bytes(&folder.join(&resource.path))?;
         let Ok(frame) = csv::read(resource, &bytes) else { return Ok(None) };
         made.frames.push(frame);
     }
@@ -106,11 +106,11 @@ pub(super) fn read(folder: &Path, page: &Page) -> Result<Option<FinishedItem>, C
 pub(super) fn scope(folder: &Path) -> Result<Option<ExpressionScope>, CommandFailure> {
     let mut frames = vec![];
     if folder.join(PACKAGE).exists() {
-        let Ok(package) = serde_json::from_slice::<Package>(&bytes_of(&folder.join(PACKAGE))?) else {
+        let Ok(package) = serde_json::from_slice::<Package>(&read_file_bytes(&folder.join(PACKAGE))?) else {
             return Ok(None);
         };
         for resource in package.resources {
-            let bytes = bytes_of(&folder.join(&resource.path))?;
+            let bytes = read_file_bytes(&folder.join(&resource.path))?;
             let Ok(frame) = csv::read(resource, &bytes) else { return Ok(None) };
             frames.push(frame);
         }
@@ -119,13 +119,13 @@ pub(super) fn scope(folder: &Path) -> Result<Option<ExpressionScope>, CommandFai
 }
 
 /// Reads a file.
-pub(super) fn bytes_of(path: &Path) -> Result<Vec<u8>, CommandFailure> {
+pub(super) fn read_file_bytes(path: &Path) -> Result<Vec<u8>, CommandFailure> {
     let what = || format!("reading {}", quoted::path(path));
     regular_file::read(path, LONGEST).map_err(|cause| CommandFailure::InputOutput { what: what(), cause })
 }
 
 /// JSON without white space: datasets are for programs.
-fn compact(data: &impl Serialize) -> Result<String, CommandFailure> {
+fn compact_json(data: &impl Serialize) -> Result<String, CommandFailure> {
     let text = serde_json::to_string(data).map_err(|cause| CommandFailure::writing("JSON")(cause.into()))?;
     Ok(text + "\n")
 }

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 ///
 /// # Errors
 /// The first error, in the order of the cases.
-pub(crate) fn side_by_side<C: Sync, T: Send, E: Send>(
+pub(crate) fn run_in_parallel<C: Sync, T: Send, E: Send>(
     cases: &[C],
     work: impl Fn(&C) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
@@ -65,25 +65,25 @@ impl<'p> ProgressMeter<'p> {
     ///
     /// # Errors
     /// First error of a case.
-    pub(crate) fn each<C: Sync, T: Send, E: Send>(
+    pub(crate) fn run_cases<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
         work: impl Fn(&C) -> Result<T, E> + Sync,
     ) -> Result<Vec<T>, E> {
-        side_by_side(cases, |case| work(case).inspect(|_| self.add(1.0)))
+        run_in_parallel(cases, |case| work(case).inspect(|_| self.add(1.0)))
     }
 
     /// As [`each`](Self::each), but starts with the last case, for cases of increasing cost.
     ///
     /// # Errors
     /// First error of a case.
-    pub(crate) fn each_from_last<C: Sync, T: Send, E: Send>(
+    pub(crate) fn run_cases_from_last<C: Sync, T: Send, E: Send>(
         &self,
         cases: &[C],
         work: impl Fn(&C) -> Result<T, E> + Sync,
     ) -> Result<Vec<T>, E> {
         let cases: Vec<&C> = cases.iter().rev().collect();
-        let mut all = side_by_side(&cases, |case| work(case).inspect(|_| self.add(1.0)))?;
+        let mut all = run_in_parallel(&cases, |case| work(case).inspect(|_| self.add(1.0)))?;
         all.reverse();
         Ok(all)
     }
@@ -100,12 +100,12 @@ mod tests {
         let progress = |share: f64| heard.lock().unwrap().push(share);
         let meter = ProgressMeter::new(8.0, &progress);
         let square = |case: &u32| Ok::<_, ()>(case * case);
-        assert_eq!(meter.each(&[1, 2, 3, 4], square), Ok(vec![1, 4, 9, 16]));
-        assert_eq!(meter.each_from_last(&[1, 2, 3, 4], square), Ok(vec![1, 4, 9, 16]));
+        assert_eq!(meter.run_cases(&[1, 2, 3, 4], square), Ok(vec![1, 4, 9, 16]));
+        assert_eq!(meter.run_cases_from_last(&[1, 2, 3, 4], square), Ok(vec![1, 4, 9, 16]));
         let mut heard = heard.lock().unwrap().clone();
         heard.sort_by(f64::total_cmp);
         assert_eq!(heard, [1, 2, 3, 4, 5, 6, 7, 8].map(|done| f64::from(done) / 8.0));
         let meter = ProgressMeter::new(2.0, &|_| ());
-        assert_eq!(meter.each(&[1, 2], |&case| if case == 2 { Err(case) } else { Ok(()) }), Err(2));
+        assert_eq!(meter.run_cases(&[1, 2], |&case| if case == 2 { Err(case) } else { Ok(()) }), Err(2));
     }
 }

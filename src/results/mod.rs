@@ -12,7 +12,7 @@ pub use folder::Folder;
 pub(crate) use item::{Item, Progress};
 pub(crate) use journal::{Journal, JournalIdentity};
 pub(crate) use journal_error::JournalError;
-pub(crate) use meter::{ProgressMeter, side_by_side};
+pub(crate) use meter::{ProgressMeter, run_in_parallel};
 pub(crate) use team::ProcessTeam;
 
 use crate::frame::ResultFrame;

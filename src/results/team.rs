@@ -45,7 +45,7 @@ impl ProcessTeam {
     }
 
     /// Share of this process in a list of independent inputs.
-    pub(super) fn part<'i, T>(&self, all: &'i [T]) -> Vec<&'i T> {
+    pub(super) fn own_share<'i, T>(&self, all: &'i [T]) -> Vec<&'i T> {
         all.iter().skip(self.rank).step_by(self.count).collect()
     }
 
@@ -53,7 +53,7 @@ impl ProcessTeam {
     ///
     /// # Errors
     /// [`RankError`] if the study has ended on the first process, or another process is lost.
-    pub(super) fn exchanged(&self, own: &RunResults) -> Result<RunResults, RankError> {
+    pub(super) fn exchange_runs(&self, own: &RunResults) -> Result<RunResults, RankError> {
         let text = serde_json::to_string(own).map_err(|_| RankError::Unreadable(self.rank))?;
         let ranks = self.ranks();
         let gathered = ranks.gather_messages(Some(text));
@@ -61,7 +61,7 @@ impl ProcessTeam {
             Err(lost) if !self.is_first() => return Err(lost),
             gathered => self.is_first().then_some(gathered),
         };
-        let told: ExchangedRuns = ranks.tell_message(said)?;
+        let told: ExchangedRuns = ranks.broadcast_message(said)?;
         let all = told.inspect_err(|_| self.has_ended.store(true, Ordering::Relaxed))?;
         let mut runs = RunResults::new();
         for (rank, text) in all.iter().enumerate() {
@@ -85,7 +85,7 @@ impl Drop for ProcessTeam {
             // The runs of the others are discarded.
             let gathered = ranks.gather(Parcel::of(&None::<String>));
             let said = self.is_first().then_some(Err(RankError::Ended(0)));
-            let told = gathered.and_then(|_| ranks.tell_message::<ExchangedRuns>(said));
+            let told = gathered.and_then(|_| ranks.broadcast_message::<ExchangedRuns>(said));
             self.has_ended.store(!matches!(told, Ok(Ok(_))), Ordering::Relaxed);
         }
     }
@@ -121,13 +121,13 @@ mod tests {
                         };
                         journal.recall(&key.to_string(), |_| true, make)
                     };
-                    let first = journal.once(|| run(&0)).ok()?;
+                    let first = journal.run_on_one(|| run(&0)).ok()?;
                     if fails && rank == 0 {
                         return None;
                     }
                     let many: Vec<u64> = (1..20).collect();
-                    let second = journal.over(&many, run).ok()?;
-                    let third = journal.over(&[20], run).ok()?;
+                    let second = journal.run_all(&many, run).ok()?;
+                    let third = journal.run_all(&[20], run).ok()?;
                     Some([vec![first], second, third].concat())
                 }
             };

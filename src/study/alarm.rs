@@ -16,7 +16,7 @@ pub(crate) enum WarningLevel {
 
 impl WarningLevel {
     /// True if the user is warned.
-    pub(crate) fn is_told(self) -> bool {
+    pub(crate) fn is_warning(self) -> bool {
         self != WarningLevel::Within
     }
 }

@@ -112,7 +112,7 @@ impl StudyCase {
     }
 
     /// Parses another scene with the same methods, and the same start file if it has one.
-    pub(crate) fn beside(&self, text: &str) -> Result<StudyCase, SceneErrors> {
+    pub(crate) fn with_text_of(&self, text: &str) -> Result<StudyCase, SceneErrors> {
         StudyCase::of(&self.what, text, &[], self.methods, Some(&self.values))
     }
 }
@@ -166,6 +166,6 @@ mod tests {
         fs::remove_file(&start).unwrap();
         fs::remove_file(&scene).unwrap();
         assert_eq!(again(&case), checksum);
-        assert_eq!(again(&case.beside(&text).unwrap()), checksum);
+        assert_eq!(again(&case.with_text_of(&text).unwrap()), checksum);
     }
 }

@@ -80,7 +80,7 @@ impl SettingChoice {
     }
 
     /// True if the settings on axes of a kind equal those of another choice.
-    pub(crate) fn agrees(&self, other: &SettingChoice, decides: ChoiceEffect) -> bool {
+    pub(crate) fn agrees_on(&self, other: &SettingChoice, decides: ChoiceEffect) -> bool {
         self.names(decides) == other.names(decides)
     }
 }

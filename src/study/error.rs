@@ -110,11 +110,11 @@ impl Reported for StudyError {
             | StudyError::EveryRunFails { .. }
             | StudyError::Interrupted => ErrorClass::Precondition,
             StudyError::Threads(_) | StudyError::Parameters(_) => ErrorClass::InputOutput,
-            _ => self.passed_on().map_or(ErrorClass::Usage, Reported::class),
+            _ => self.inner_error().map_or(ErrorClass::Usage, Reported::class),
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         Some(match self {
             StudyError::Unknown(error) => error,
             StudyError::Scene(errors) => errors,
@@ -129,7 +129,7 @@ impl Reported for StudyError {
     fn remedy(&self) -> Option<String> {
         match self {
             StudyError::Threads(_) => Some("ask for fewer with --threads".to_owned()),
-            _ => self.passed_on()?.remedy(),
+            _ => self.inner_error()?.remedy(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Report items made by studies.
 
 use super::Subject;
-use super::explain::certified::{self, PlanTestEffort, QUICK, SCENES, certified};
+use super::explain::certified::{self, PlanTestEffort, QUICK, SCENES, judge_plans};
 use super::explain::{SECONDS, left_out};
 use super::rivals;
 use super::stability::{self, VariedRange, stability};
@@ -15,14 +15,14 @@ use stripmine_physics::signals;
 /// All items, in the order of their chapter.
 pub(crate) const ITEMS: &[Item] = &[
     Item::of("work-precision", speed_against_accuracy),
-    Item::of("stability", where_it_works),
-    Item::of("plans", plans_judged),
-    Item::of("left-out", left_out_compared),
+    Item::of("stability", stability_maps),
+    Item::of("plans", plan_tests),
+    Item::of("left-out", simpler_models),
     Item::of("rivals", rivals::made),
 ];
 
 /// Tests of plans by carrying them out.
-fn plans_judged(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+fn plan_tests(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (scenes, effort) = match size {
         StudySize::Quick => {
             (QUICK, PlanTestEffort { trials: [0.5; 2], limit: 0.6, estimates: 4, reference: 0.3, grid: 1.0 })
@@ -32,11 +32,11 @@ fn plans_judged(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedI
             PlanTestEffort { trials: SECONDS, limit: 10.0, estimates: 20, reference: 40.0, grid: 40.0 },
         ),
     };
-    Ok(certified::made(&certified(scenes, effort, lab.progress)?))
+    Ok(certified::made(&judge_plans(scenes, effort, lab.progress)?))
 }
 
 /// Simpler models of scenes.
-fn left_out_compared(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+fn simpler_models(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     Ok(match size {
         StudySize::Quick => left_out::compared(Some(&["shaken-box", "langevin-dense"]), 2.0, lab.progress)?,
         StudySize::Full | StudySize::All => left_out::compared(None, 2.0 * SECONDS[0], lab.progress)?,
@@ -102,7 +102,7 @@ fn speed_against_accuracy(
     let effort = work_precision::DiagramEffort { budget, repeats, phases, machine: None };
     let shown: Vec<_> = TIMED.iter().flat_map(|of_method| of_method.iter().take(most)).collect();
     let (watch, mut scenes) = (Stopwatch::processor(), vec![]);
-    let trial = TrialControl { watch: &watch, stop: signals::asked() };
+    let trial = TrialControl { watch: &watch, stop: signals::interruption_flag() };
     for (at, (name, preset, overrides)) in shown.iter().enumerate() {
         let subject = subject(preset, overrides)?;
         let share = |part: f64| progress((at as f64 + part) / shown.len() as f64);
@@ -119,7 +119,7 @@ fn subject(preset: &str, overrides: &[&str]) -> Result<Subject, CommandFailure> 
 }
 
 /// Stability maps of the scenes listed.
-fn where_it_works(lab: &StudyEnvironment<'_>, effort: StudySize) -> Result<FinishedItem, CommandFailure> {
+fn stability_maps(lab: &StudyEnvironment<'_>, effort: StudySize) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
     let most = if effort == StudySize::Quick { 1 } else { usize::MAX };
     let effort = match effort {
@@ -139,7 +139,7 @@ fn where_it_works(lab: &StudyEnvironment<'_>, effort: StudySize) -> Result<Finis
     }
     let (mut maps, all) = (vec![], surveys.len() as f64);
     let watch = Stopwatch::processor();
-    let trial = TrialControl { watch: &watch, stop: signals::asked() };
+    let trial = TrialControl { watch: &watch, stop: signals::interruption_flag() };
     for (at, (name, subject, over)) in surveys.into_iter().enumerate() {
         let share = |part: f64| progress((at as f64 + part) / all);
         maps.push((name, stability(&subject, over, &effort, trial, &Journal::none(), &share)?));

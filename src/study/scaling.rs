@@ -87,7 +87,7 @@ pub(crate) fn scaling(
         let ThroughputRequest { bench, prepared, equilibration, steps, repeats } = measurement()?;
         let begun = Instant::now();
         let begin = || {
-            ranks::over(ranks::RankBackend::Threads(crew.ranks), || {
+            ranks::with_backend(ranks::RankBackend::Threads(crew.ranks), || {
                 ThroughputRun::begin(bench, prepared, equilibration, steps)
             })
         };
@@ -103,14 +103,14 @@ pub(crate) fn scaling(
     }
     let measured = running.into_iter().map(|(pool, run, ..)| {
         pool.install(|| {
-            let beside = run.beside();
+            let beside = run.overhead_seconds();
             Ok((run.measured()?, beside))
         })
     });
-    Ok(told(&crews, measured.collect::<Result<_, MeasurementError>>()?))
+    Ok(scaling_results(&crews, measured.collect::<Result<_, MeasurementError>>()?))
 }
 
-fn told(crews: &[ThreadLayout], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
+fn scaling_results(crews: &[ThreadLayout], measured: Vec<(Throughput, [f64; 4])>) -> Scaling {
     let (results, beside): (Vec<Throughput>, Vec<[f64; 4]>) = measured.into_iter().unzip();
     let threads: Vec<usize> = crews.iter().map(|crew| crew.all()).collect();
     let first = &results[0];
@@ -163,7 +163,7 @@ fn serial(threads: &[usize], times: &[f64]) -> Option<f64> {
 
 impl Scaling {
     /// Predicted speedup of a number of threads over one by Amdahl's law; none where the serial part is unknown.
-    pub(crate) fn foreseen(&self, threads: usize) -> Option<f64> {
+    pub(crate) fn predicted_speedup(&self, threads: usize) -> Option<f64> {
         let serial = self.phases.iter().find(|phase| phase.name == WHOLE)?.serial?.max(0.0);
         Some(1.0 / (serial + (1.0 - serial) / threads as f64))
     }

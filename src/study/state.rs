@@ -26,7 +26,13 @@ impl ParticleState {
         grains.sort_by_key(|grain| grain.id);
         let body = |grain: &&Particle| {
             let Particle { omega, radius, mass, .. } = **grain;
-            MovingParticle { position: grain.place(), velocity: grain.planar_velocity(), omega, radius, mass }
+            MovingParticle {
+                position: grain.planar_position(),
+                velocity: grain.planar_velocity(),
+                omega,
+                radius,
+                mass,
+            }
         };
         ParticleState(grains.iter().map(body).collect())
     }
@@ -110,7 +116,7 @@ pub(crate) fn displaced(
 }
 
 /// Delays a scene: its particles first fly freely for a time.
-pub(crate) fn delayed(scene: &Prepared, late: f64) -> Prepared {
+pub(crate) fn delayed_scene(scene: &Prepared, late: f64) -> Prepared {
     let begin = displaced(scene.particles(), &scene.domain, |_, disc| {
         disc.planar_velocity().map(|part| -late * part)
     });

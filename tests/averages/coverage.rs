@@ -181,10 +181,10 @@ impl System {
         let mut rows = AveragedRows::new(method.quantities);
         rows.add(&simulation.row());
         let schedule = prepared.schedule;
-        while !schedule.until.has_come(&simulation.clock()) {
+        while !schedule.until.has_been_reached(&simulation.clock()) {
             let next = schedule.rows.next(&simulation.clock()).unwrap();
             simulation.advance(&[schedule.until, next], &AtomicBool::new(false)).unwrap();
-            if next.has_come(&simulation.clock()) {
+            if next.has_been_reached(&simulation.clock()) {
                 rows.add(&simulation.row());
             }
         }

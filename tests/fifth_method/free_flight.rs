@@ -16,9 +16,9 @@ use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::{
     self, Binding, DISC_RIVALS, DISCS, DT, DURATION, DiscStart, HEADING, KeySet, OUTPUT, Output, Overrides,
     PLANAR_DOMAIN, Preset, ReadBinding, RunKeys, STEP, STEPPED_RUN, SceneErrors, SceneValues, TARGETED,
-    Vocabulary, WallMotion, Write, bind_heading, disagreements, too_many_steps,
+    Vocabulary, WallMotion, Write, bind_heading, start_inconsistencies, too_many_steps,
 };
-use stripmine_physics::start::{StatedStart, make, outside};
+use stripmine_physics::start::{StatedStart, create_initial_state, outside};
 
 pub static ENTRY: MethodEntry = MethodEntry {
     vocabulary: &VOCABULARY,
@@ -79,7 +79,7 @@ static VOCABULARY: Vocabulary = Vocabulary {
         rivals: &[DISC_RIVALS, DURATION],
         advice: &[],
     },
-    rules: &[disagreements, too_many_steps],
+    rules: &[start_inconsistencies, too_many_steps],
     presets: &[Preset {
         name: "drift",
         text: "# Discs that fly through each other\nformat = 2\nunits = \"reduced\"\n[method]\nkind = \"free-flight\"\n\
@@ -121,11 +121,11 @@ impl Flight {
     fn prepare(values: SceneValues) -> Result<Flight, SceneErrors> {
         let (mut flight, mut read) = (Flight::default(), ReadBinding::new(&values));
         flight.bind(&mut read);
-        read.done()?;
+        read.finish_reading()?;
         let (domain, start) = (&flight.domain, &flight.start);
         let stated = StatedStart { values: &values, domain, start, walls: WallMotion::Fixed, compress };
-        let made = make(&stated)?;
-        SceneErrors::none_of(outside(&stated, &made.domain, &made.particles))?;
+        let made = create_initial_state(&stated)?;
+        SceneErrors::ok_if_empty(outside(&stated, &made.domain, &made.particles))?;
         Ok(Flight { bounds: Some(made.domain), made: made.particles, ..flight })
     }
 }
@@ -233,14 +233,14 @@ impl Stepwise for Free {
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&[f64; 2]) -> R) -> R {
+    fn with_observation<R>(run: &Stepped<Self>, work: impl FnOnce(&[f64; 2]) -> R) -> R {
         let energy = |v: [f64; 2], mass: f64| 0.5 * mass * (v[0] * v[0] + v[1] * v[1]);
         let discs = run.state.discs.all().iter();
         let kinetic = discs.map(|disc| energy(disc.planar_velocity(), disc.mass)).sum();
         work(&[run.clock().time, kinetic])
     }
 
-    fn keep(_: &Stepped<Self>, _: &mut Snapshot) {}
+    fn save_into(_: &Stepped<Self>, _: &mut Snapshot) {}
 
     fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         let discs = run.state.discs.all_mut();

@@ -21,7 +21,7 @@ fn reports() -> PathBuf {
 
 /// All sections of the report, as its page shows them.
 fn sections() -> Vec<Section> {
-    let folder = Folder::of_another(&reports());
+    let folder = Folder::opened_elsewhere(&reports());
     let items =
         [reports(), reports().join("host")].into_iter().flat_map(|folder| fs::read_dir(folder).unwrap());
     let names = items.map(|item| item.unwrap()).filter(|item| item.path().join("provenance.json").exists());

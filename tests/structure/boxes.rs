@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::structure::{
-    FunctionArguments, SamplingKind, StructureObservable, StructureSetting, observable, seen,
+    FunctionArguments, SamplingKind, StructureObservable, StructureSetting, observable, sampled_values,
 };
 
 /// Discs of a box, with the vectors between them by the nearest images.
@@ -142,7 +142,9 @@ fn functions_agree_with_naive_sums() {
             disc.velocity = [random.random_range(-1.0..1.0), random.random_range(-0.5..1.5), 0.0];
         }
         let discs = particles.grains().to_vec();
-        let way = |a: &Particle, b: &Particle| setting.domain.displacement(a.place(), b.place());
+        let way = |a: &Particle, b: &Particle| {
+            setting.domain.displacement(a.planar_position(), b.planar_position())
+        };
         let ways = discs.iter().map(|a| discs.iter().map(|b| way(a, b)).collect()).collect();
         let seeing = Seeing { setting, discs, ways };
         for name in names.into_iter().chain(profiles) {
@@ -151,7 +153,7 @@ fn functions_agree_with_naive_sums() {
             }
             let observable = observable(name).unwrap();
             let SamplingKind::Once { over, further, .. } = observable.seen else { unreachable!() };
-            let [found, weights] = seen(observable, setting, &particles);
+            let [found, weights] = sampled_values(observable, setting, &particles);
             let places = over.places(&setting);
             assert_eq!(found.len(), places.len() + further, "{which}: {name}");
             assert!(matches!(over, FunctionArguments::Waves) == (name == "S(k)"));

@@ -20,8 +20,8 @@ const NAMES: [&str; 3] = ["stress_xx(x,y)", "stress_xy(x,y)", "stress_yy(x,y)"];
 fn stress(setting: StructureSetting, discs: &Particles, forces: &PairForces) -> [Vec<f64>; 3] {
     let observables = NAMES.map(|name| observable(name).unwrap());
     let mut look = StructureSample::new(setting, discs, observables.into_iter());
-    assert!(look.at(|states| states.take_up(discs)));
-    look.meet(discs, forces);
+    assert!(look.take_sample(|states| states.store_grains(discs)));
+    look.add_pair_forces(discs, forces);
     observables.map(|it| {
         let [values, _] = look.values(it);
         values
@@ -82,11 +82,11 @@ fn stress_is_the_sum_over_all_pairs() {
             if one.kind == ParticleKind::Grain {
                 let [x, y] = one.planar_velocity();
                 for (sum, part) in [x * x, x * y, y * y].into_iter().enumerate() {
-                    naive[3 * cell(one.place()) + sum] += one.mass * part / area[0];
+                    naive[3 * cell(one.planar_position()) + sum] += one.mass * part / area[0];
                 }
             }
             for (other, two) in all.iter().enumerate().skip(at + 1) {
-                let way = domain.displacement(one.place(), two.place());
+                let way = domain.displacement(one.planar_position(), two.planar_position());
                 let are_walls = one.kind == ParticleKind::Wall && two.kind == ParticleKind::Wall;
                 if way[0].hypot(way[1]) >= forces.reach || are_walls {
                     continue;
@@ -102,7 +102,7 @@ fn stress_is_the_sum_over_all_pairs() {
                     net[at][axis] -= force[axis];
                 }
                 let parts = [x * force[0], 0.5 * (x * force[1] + y * force[0]), y * force[1]];
-                for place in [one.place(), two.place()] {
+                for place in [one.planar_position(), two.planar_position()] {
                     for (sum, part) in parts.into_iter().enumerate() {
                         naive[3 * cell(place) + sum] += 0.5 * part / area[0];
                     }

@@ -23,7 +23,7 @@ use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::particles::{Particle, ParticleKind, Particles};
 use stripmine_physics::structure::{
-    NAMES, SamplingKind, StructureSetting, observable, pair_counts, pair_counts_of_all, seen,
+    NAMES, SamplingKind, StructureSetting, observable, pair_counts, pair_counts_of_all, sampled_values,
 };
 
 fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
@@ -123,7 +123,7 @@ fn ideal_in_channel(random: &mut Stream) -> (StructureSetting, Particles) {
 }
 
 fn values(name: &str, setting: &StructureSetting, discs: &Particles) -> Vec<f64> {
-    let [values, _] = seen(observable(name).unwrap(), *setting, discs);
+    let [values, _] = sampled_values(observable(name).unwrap(), *setting, discs);
     values
 }
 

@@ -6,7 +6,7 @@ use std::fs;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::domain::Domain;
 use stripmine_physics::particles::{ParticleKind, Particles};
-use stripmine_physics::structure::{StructureSetting, observable, seen};
+use stripmine_physics::structure::{StructureSetting, observable, sampled_values};
 
 /// Random points along a floor, whose density decreases with height: some are above the height of the box.
 pub fn ideal_above_floor(
@@ -81,7 +81,7 @@ fn open_top_functions_agree_with_hand_sums() {
         );
     }
     // Weights: zero for a slice without a disc, the area for slices along the floor.
-    let weights = |name: &str| seen(observable(name).unwrap(), setting, &discs)[1].clone();
+    let weights = |name: &str| sampled_values(observable(name).unwrap(), setting, &discs)[1].clone();
     assert_eq!([weights("flow(y)")[2], weights("flow(y)")[99]], [2.0, 0.0]);
     assert!((weights("density(x)")[0] - 267.1).abs() < 1e-9);
 }
@@ -96,7 +96,7 @@ fn ideal_gas_below_an_open_top_keeps_heights() {
         [([true, false], vec![0.5; 90]), ([false; 2], vec![0.5; 90]), ([false; 2], mixture)]
     {
         let (setting, discs) = ideal_above_floor(&mut random, periodic, &radii);
-        let [g, pairs] = seen(observable("g(r)").unwrap(), setting, &discs);
+        let [g, pairs] = sampled_values(observable("g(r)").unwrap(), setting, &discs);
         let (width, length) = (setting.diameter / 50.0, setting.domain.length(0));
         // Even positions along the floor, one more for one disc than for the other, so that their differences are even too.
         let place = |at: usize, of: usize, radius: f64| match periodic[0] {

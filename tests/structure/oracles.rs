@@ -7,7 +7,7 @@ use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_physics::particles::Particle;
 use stripmine_physics::structure::{
     MotionHistory, OBSERVABLES, SampleData, SamplingKind, StructureSample, observable, pair_counts,
-    pair_counts_of_all, seen, strides,
+    pair_counts_of_all, sampled_values, strides,
 };
 
 /// Hexatic order and neighbours of random discs, by a search over all of them: the six nearest sorted by distance, the angle of each.
@@ -19,8 +19,9 @@ fn order_and_neighbours_agree_with_naive_search() {
         let discs_of = discs.grains();
         let ways = |own: &Particle| -> Vec<[f64; 2]> {
             let others = discs_of.iter().filter(|other| other.id != own.id);
-            let mut ways: Vec<[f64; 2]> =
-                others.map(|other| setting.domain.displacement(own.place(), other.place())).collect();
+            let mut ways: Vec<[f64; 2]> = others
+                .map(|other| setting.domain.displacement(own.planar_position(), other.planar_position()))
+                .collect();
             ways.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
             ways
         };
@@ -64,11 +65,11 @@ fn joint_samples_equal_separate_samples() {
         for _ in 0..3 {
             let (_, discs) = ideal(&mut random, sides, periodic, 2000);
             let mut of = |pool: &rayon::ThreadPool| {
-                pool.install(|| assert!(look.at(|states| states.take_up(&discs))));
+                pool.install(|| assert!(look.take_sample(|states| states.store_grains(&discs))));
                 all().map(|it| look.values(it)).collect::<Vec<_>>()
             };
             let [one, three] = [of(&pools[0]), of(&pools[1])];
-            let alone: Vec<[Vec<f64>; 2]> = all().map(|it| seen(it, setting, &discs)).collect();
+            let alone: Vec<[Vec<f64>; 2]> = all().map(|it| sampled_values(it, setting, &discs)).collect();
             // Slices without a disc have no temperature.
             let bits = |all: &[[Vec<f64>; 2]]| -> Vec<u64> {
                 all.concat().concat().iter().map(|it| it.to_bits()).collect()
@@ -94,7 +95,7 @@ fn waves_agree_with_sines_and_cosines() {
             unreachable!()
         };
         let vectors = over.places(&setting);
-        let [found, _] = seen(observable, setting, &discs);
+        let [found, _] = sampled_values(observable, setting, &discs);
         // Up to 25 of a diameter there are 226 and 171 waves.
         assert_eq!(vectors.len(), if periodic[0] { 226 + 171 } else { 171 });
         for (vector, found) in vectors.iter().zip(found) {
@@ -128,7 +129,7 @@ fn profiles_agree_with_naive_slices() {
     }
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         let [density, flow, temperature] = ["density", "flow", "temperature"]
-            .map(|of| seen(observable(&format!("{of}({name})")).unwrap(), setting, &discs));
+            .map(|of| sampled_values(observable(&format!("{of}({name})")).unwrap(), setting, &discs));
         let [[density, _], [flow, masses], [temperature, freedoms]] = [density, flow, temperature];
         let domain = setting.domain;
         let width = domain.length(axis) / 100.0;
@@ -177,7 +178,7 @@ fn motion_agrees_with_all_stored_samples() {
         }
         whole.push(now.to_vec());
         let mut met = 0;
-        motion.look(&now, 0.5 * look as f64, |earlier, place, means| {
+        motion.add_sample(&now, 0.5 * look as f64, |earlier, place, means| {
             met += 1;
             assert_eq!(earlier + lags[place], look);
             let pairs = whole[earlier as usize].iter().zip(&now).filter(|(_, later)| !later[0].is_nan());

@@ -4,7 +4,7 @@ use crate::input::{InputErrors, MistakeKind, Spot};
 use crate::ranks::RankBackend;
 use serde::{Serialize, Serializer};
 use std::fs;
-use stripmine_kernels::isa::aligned_column::taken;
+use stripmine_kernels::isa::aligned_column::column_memory;
 
 /// Memory of the program itself: its code, threads and files (bytes).
 pub(crate) const PROGRAM: f64 = 17.0e6;
@@ -54,14 +54,14 @@ impl RankMemory {
     /// Excess of the rows when split into as many parts (bytes).
     fn rounding(&self, ranks: f64) -> f64 {
         let [rows, bytes] = self.rows;
-        rows * (ranks * taken(bytes / ranks) - taken(bytes))
+        rows * (ranks * column_memory(bytes / ranks) - column_memory(bytes))
     }
 }
 
 impl MemoryForecast {
     /// Returns the forecast for another crew than one rank. Processes may run on different machines, so theirs is the most that one process needs.
     #[must_use]
-    pub fn on(self, crew: RankBackend) -> MemoryForecast {
+    pub fn for_crew(self, crew: RankBackend) -> MemoryForecast {
         let (more, threads) = match crew {
             RankBackend::One | RankBackend::Threads(..=1) => return self,
             RankBackend::Threads(count) => {
@@ -80,7 +80,7 @@ impl MemoryForecast {
 
     /// Returns the forecast with another run in the same process.
     #[must_use]
-    pub fn beside(self, other: &MemoryForecast) -> MemoryForecast {
+    pub fn with_concurrent(self, other: &MemoryForecast) -> MemoryForecast {
         let needed = self.needed + other.needed.saturating_sub(PROGRAM as u64);
         let what = match self.what == other.what {
             true => format!("{}, twice,", self.what),

@@ -59,7 +59,11 @@ impl NeighbourSearch {
     }
 
     /// Search over these positions, numbered from 0.
-    pub fn among(domain: Domain, positions: impl ExactSizeIterator<Item = [f64; 2]>, reach: f64) -> Self {
+    pub fn over_positions(
+        domain: Domain,
+        positions: impl ExactSizeIterator<Item = [f64; 2]>,
+        reach: f64,
+    ) -> Self {
         let mut near = NeighbourSearch::new(domain, reach);
         near.members.reserve_exact(positions.len());
         near.last.reserve(positions.len());
@@ -93,7 +97,7 @@ impl NeighbourSearch {
     }
 
     /// Number and position of everything that may be within reach of a wrapped position.
-    pub fn of(&self, position: [f64; 2]) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
+    pub fn candidates_near(&self, position: [f64; 2]) -> impl Iterator<Item = (u32, [f64; 2])> + '_ {
         let [column, row] = self.square(position);
         self.around(0, column)
             .flat_map(move |column| self.around(1, row).map(move |row| [column, row]))
@@ -129,10 +133,10 @@ mod tests {
                     })
                 })
                 .collect();
-            let near = NeighbourSearch::among(domain, points.iter().copied(), 1.0);
+            let near = NeighbourSearch::over_positions(domain, points.iter().copied(), 1.0);
             for point in &points {
                 let mut found: Vec<u32> = near
-                    .of(*point)
+                    .candidates_near(*point)
                     .filter(|(_, other)| domain.distance(*point, *other) < 1.0)
                     .map(|(i, _)| i)
                     .collect();

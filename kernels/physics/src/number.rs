@@ -15,7 +15,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 }
 
 /// Formats a mean with the half-width of its confidence interval, which has two digits: `0.675 ± 0.060`.
-pub fn with_bar(mean: f64, bar: f64) -> String {
+pub fn with_error_bar(mean: f64, bar: f64) -> String {
     let scientific = format!("{bar:.1e}");
     let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
     let Some(exponent) = exponent.filter(|_| bar > 0.0 && bar.is_finite()) else {
@@ -34,13 +34,13 @@ pub fn with_bar(mean: f64, bar: f64) -> String {
 }
 
 /// Formats a number for sentences, with a number of significant digits: `8.2·10⁻⁸` where it is small or large.
-pub fn in_tens(value: f64, digits: usize) -> String {
+pub fn with_power_of_ten(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };
     let Ok(exponent) = exponent.parse() else { return text };
     match mantissa {
-        "1" => ten_to(exponent),
-        mantissa => format!("{mantissa}·{}", ten_to(exponent)),
+        "1" => power_of_ten(exponent),
+        mantissa => format!("{mantissa}·{}", power_of_ten(exponent)),
     }
 }
 
@@ -49,7 +49,7 @@ pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
     let [Some(low), Some(high)] =
-        [values.first(), values.last()].map(|end| end.map(|end| in_tens(*end, digits)))
+        [values.first(), values.last()].map(|end| end.map(|end| with_power_of_ten(*end, digits)))
     else {
         return "nothing".to_owned();
     };
@@ -57,13 +57,13 @@ pub fn range(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
 }
 
 /// Formats a count with its noun: `1 scene`, `3 scenes`.
-pub fn counted(count: impl std::fmt::Display, one: &str, many: &str) -> String {
+pub fn count_with_noun(count: impl std::fmt::Display, one: &str, many: &str) -> String {
     let count = count.to_string();
     format!("{count} {}", if count == "1" { one } else { many })
 }
 
 /// Formats a power of ten.
-pub fn ten_to(power: i32) -> String {
+pub fn power_of_ten(power: i32) -> String {
     match power {
         0 => "1".to_owned(),
         1 => "10".to_owned(),
@@ -91,12 +91,12 @@ mod tests {
         assert_eq!(range([3.3e-6, 2.7e-6], 2), "2.7·10⁻⁶ to 3.3·10⁻⁶");
         assert_eq!(range([0.1201, 0.1204], 2), "0.12");
         assert_eq!(range([], 2), "nothing");
-        assert_eq!([1, 3].map(|count| counted(count, "run", "runs")), ["1 run", "3 runs"]);
+        assert_eq!([1, 3].map(|count| count_with_noun(count, "run", "runs")), ["1 run", "3 runs"]);
     }
 
     #[test]
     fn sentences_have_powers_of_ten() {
-        let texts = [8.2e-8, 1e-12, 0.25, 3e9].map(|value| in_tens(value, 2));
+        let texts = [8.2e-8, 1e-12, 0.25, 3e9].map(|value| with_power_of_ten(value, 2));
         assert_eq!(texts, ["8.2·10⁻⁸", "10⁻¹²", "0.25", "3·10⁹"]);
     }
 
@@ -112,7 +112,7 @@ mod tests {
             (1.5, 0.0, "1.5 ± 0"),
             (1.5, f64::INFINITY, "1.5 ± inf"),
         ] {
-            assert_eq!(with_bar(mean, bar), text);
+            assert_eq!(with_error_bar(mean, bar), text);
         }
     }
 

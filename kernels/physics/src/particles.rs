@@ -43,7 +43,7 @@ pub(crate) const fn in_plane([x, y, _]: [f64; 3]) -> [f64; 2] {
 
 impl Particle {
     /// Position in the plane (length).
-    pub const fn place(&self) -> [f64; 2] {
+    pub const fn planar_position(&self) -> [f64; 2] {
         in_plane(self.position)
     }
 
@@ -108,7 +108,7 @@ impl Particles {
             // Depth counts only where it is not 0, so a planar state keeps the checksum of its plane.
             let depth = [disc.position[2], disc.velocity[2]];
             let depth = depth.into_iter().filter(|_| depth != [0.0; 2]);
-            let planar = disc.place().into_iter().chain(disc.planar_velocity()).chain([disc.omega]);
+            let planar = disc.planar_position().into_iter().chain(disc.planar_velocity()).chain([disc.omega]);
             planar.chain(depth).for_each(|number| hasher.update(&number.to_bits().to_le_bytes()));
         }
         format!("{:08x}", hasher.finalize())
@@ -154,21 +154,21 @@ impl GrainStates {
     }
 
     /// Marks all grains as lost.
-    pub fn forget(&mut self) {
+    pub fn mark_all_lost(&mut self) {
         self.rows.fill([f64::NAN; 4]);
     }
 
     /// Stores position and velocity of a grain by its index in the scene's order; indices beyond the grains are ignored.
     #[inline]
-    pub(crate) fn put(&mut self, number: usize, [x, y]: [f64; 2], [vx, vy]: [f64; 2]) {
+    pub(crate) fn store_state(&mut self, number: usize, [x, y]: [f64; 2], [vx, vy]: [f64; 2]) {
         if let Some(row) = self.rows.get_mut(number) {
             *row = [x, y, vx, vy];
         }
     }
 
     /// Stores the grains among some particles, by id; missing grains are lost.
-    pub fn take_up(&mut self, particles: &Particles) {
-        self.forget();
+    pub fn store_grains(&mut self, particles: &Particles) {
+        self.mark_all_lost();
         for (at, grain) in particles.grains().iter().enumerate() {
             // Grains are mostly in the order of the scene.
             let number = match self.ids.get(at) == Some(&grain.id) {
@@ -176,7 +176,7 @@ impl GrainStates {
                 false => self.number(grain.id),
             };
             if let Some(number) = number {
-                self.put(number, grain.place(), grain.planar_velocity());
+                self.store_state(number, grain.planar_position(), grain.planar_velocity());
             }
         }
     }
@@ -217,7 +217,7 @@ pub trait PerParticle {
 
     /// Stores planar positions and velocities of the grains, with positions inside the box.
     fn states(&self, states: &mut GrainStates) {
-        states.take_up(&self.particles());
+        states.store_grains(&self.particles());
     }
 
     /// Positions in single precision, one for each particle of the start in its order; NaN where a particle is lost.

@@ -10,7 +10,7 @@ pub fn quoted(text: &str) -> String {
 }
 
 fn shortened(text: &str, most: usize) -> String {
-    let mut shown = spelled(text.chars().take(most));
+    let mut shown = escaped_characters(text.chars().take(most));
     if text.chars().nth(most).is_some() {
         shown.push('…');
     }
@@ -22,7 +22,7 @@ const LONGEST_LINE: usize = 2000;
 
 /// Quotes the name of a file without cutting it.
 pub fn path(path: &std::path::Path) -> String {
-    spelled(path.to_string_lossy().chars())
+    escaped_characters(path.to_string_lossy().chars())
 }
 
 /// Quotes a message of one line, which may repeat text from outside.
@@ -37,14 +37,14 @@ pub fn message(text: &str) -> String {
 }
 
 /// Quotes a whole text for a terminal, with its line ends and tabs.
-pub fn shown(text: &str) -> String {
+pub fn escaped_for_terminal(text: &str) -> String {
     // Numbers have narrow no-break spaces between groups of digits.
     let is_plain = |c: char| matches!(c, ' '..='~' | '\n' | '\t' | '\u{202f}');
     let pieces = text.split_inclusive(['\n', '\t', '\u{202f}']);
     let one = |piece: &str| match piece.strip_suffix(['\n', '\t', '\u{202f}']) {
         _ if piece.chars().all(is_plain) => piece.to_owned(),
-        Some(rest) => spelled(rest.chars()) + &piece[rest.len()..],
-        None => spelled(piece.chars()),
+        Some(rest) => escaped_characters(rest.chars()) + &piece[rest.len()..],
+        None => escaped_characters(piece.chars()),
     };
     pieces.map(one).collect()
 }
@@ -68,7 +68,7 @@ pub fn in_json(text: &str) -> String {
     out
 }
 
-fn spelled(text: impl Iterator<Item = char>) -> String {
+fn escaped_characters(text: impl Iterator<Item = char>) -> String {
     let mut shown = String::new();
     let mut marks = 0;
     for c in text {
@@ -104,9 +104,9 @@ mod tests {
 
     #[test]
     fn standard_output_keeps_its_shape_and_hides_nothing() {
-        assert_eq!(shown("a\tb\u{202f}c\nd é\n"), "a\tb\u{202f}c\nd é\n");
-        assert_eq!(shown("\u{1b}[2J\n\u{202e}x\r\n"), "\\u{1b}[2J\n\\u{202e}x\\r\n");
-        assert_eq!(shown(&"x".repeat(5000)).len(), 5000);
+        assert_eq!(escaped_for_terminal("a\tb\u{202f}c\nd é\n"), "a\tb\u{202f}c\nd é\n");
+        assert_eq!(escaped_for_terminal("\u{1b}[2J\n\u{202e}x\r\n"), "\\u{1b}[2J\n\\u{202e}x\\r\n");
+        assert_eq!(escaped_for_terminal(&"x".repeat(5000)).len(), 5000);
         let nasty = "a\u{202e}\u{9b}e\u{301}\u{e0041}é";
         let json = in_json(&serde_json::to_string(&nasty).unwrap());
         assert!(json.chars().all(|c| c.is_ascii() || c == 'é'), "{json}");

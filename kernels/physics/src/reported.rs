@@ -81,28 +81,28 @@ pub trait Reported: std::error::Error + Send + Sync {
     fn class(&self) -> ErrorClass;
 
     /// Inner error that supplies the mistakes, location, remedy and details not given here.
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         None
     }
 
     /// Mistakes of an input file, if it is about one.
     fn mistakes(&self) -> Option<&InputErrors> {
-        self.passed_on()?.mistakes()
+        self.inner_error()?.mistakes()
     }
 
     /// Location, if known.
     fn place(&self) -> Option<FilePlace> {
-        self.passed_on()?.place()
+        self.inner_error()?.place()
     }
 
     /// Remedy, unless the message has a paragraph on it.
     fn remedy(&self) -> Option<String> {
-        self.passed_on()?.remedy()
+        self.inner_error()?.remedy()
     }
 
     /// Further facts as data.
     fn details(&self) -> Option<serde_json::Value> {
-        self.passed_on()?.details()
+        self.inner_error()?.details()
     }
 }
 

@@ -41,7 +41,7 @@ static HOLDERS: Mutex<usize> = Mutex::new(0);
 /// The system's error.
 pub fn install(last_words: impl Fn(ProcessEnd) + Send + Sync + 'static) -> io::Result<()> {
     LAST_WORDS.get_or_init(|| Box::new(last_words));
-    ignoring(|| ctrlc::set_handler(arrived).map_err(io::Error::other))
+    ignoring(|| ctrlc::set_handler(handle_signal).map_err(io::Error::other))
 }
 
 /// Installs handlers and ignores two signals: the limit of file sizes, and the end of the terminal if the process was started with it ignored
@@ -66,7 +66,7 @@ fn ignoring(handlers: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
 }
 
 /// Flag set by a signal that arrived during a hold.
-pub fn asked() -> &'static AtomicBool {
+pub fn interruption_flag() -> &'static AtomicBool {
     &ASKED
 }
 
@@ -91,7 +91,7 @@ impl Drop for HoldGuard {
 ///
 /// # Errors
 /// Errors of the work.
-pub fn whole<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
+pub fn run_protected<R, E>(work: impl FnOnce() -> Result<R, E>) -> Result<R, E> {
     let held = hold();
     let done = work()?;
     drop(held);
@@ -112,7 +112,7 @@ fn holders() -> MutexGuard<'static, usize> {
 }
 
 /// Handles a signal, on the handler's thread.
-fn arrived() {
+fn handle_signal() {
     let holders = holders();
     let first = !ASKED.swap(true, Ordering::SeqCst);
     match (*holders, first) {
@@ -152,7 +152,7 @@ mod tests {
 
     fn interrupted_once() {
         raise(Signal::SIGINT).unwrap();
-        while !asked().load(Ordering::SeqCst) {
+        while !interruption_flag().load(Ordering::SeqCst) {
             std::thread::yield_now();
         }
     }
@@ -166,7 +166,7 @@ mod tests {
     }
 
     fn whole_work() {
-        let _ = whole::<_, ()>(|| {
+        let _ = run_protected::<_, ()>(|| {
             interrupted_once();
             say("written");
             Ok(())
@@ -175,7 +175,7 @@ mod tests {
     }
 
     fn failing_work() {
-        let failed = whole::<(), _>(|| {
+        let failed = run_protected::<(), _>(|| {
             interrupted_once();
             Err("full")
         });

@@ -42,7 +42,7 @@ const TERMS: [f64; 3] = [3.0 / 2.0, 15.0 / 8.0, 35.0 / 16.0];
 /// Applies `work` to the register in the processor's own type, if the instruction set `S` is `Set`.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn on<S: Simd, Set: Simd, R: Copy, Native: Copy>(
+fn apply_native<S: Simd, Set: Simd, R: Copy, Native: Copy>(
     simd: S,
     register: R,
     work: impl FnOnce(Set, Native) -> Native,
@@ -71,10 +71,10 @@ impl EstimatingElement for f32 {
     fn inverse_root<S: Simd>(simd: S, a: S::f32s) -> Option<(S::f32s, &'static [f64])> {
         #[cfg(target_arch = "x86_64")]
         {
-            if let Some(root) = on(simd, a, |set: V4, a| set.avx512f._mm512_rsqrt14_ps(a)) {
+            if let Some(root) = apply_native(simd, a, |set: V4, a| set.avx512f._mm512_rsqrt14_ps(a)) {
                 return Some((root, &TERMS[..1]));
             }
-            if let Some(root) = on(simd, a, |set: V3, a| set.avx._mm256_rsqrt_ps(a)) {
+            if let Some(root) = apply_native(simd, a, |set: V3, a| set.avx._mm256_rsqrt_ps(a)) {
                 return Some((root, &TERMS[..2]));
             }
         }
@@ -95,7 +95,7 @@ impl EstimatingElement for f64 {
     #[inline(always)]
     fn inverse_root<S: Simd>(simd: S, a: S::f64s) -> Option<(S::f64s, &'static [f64])> {
         #[cfg(target_arch = "x86_64")]
-        if let Some(root) = on(simd, a, |set: V4, a| set.avx512f._mm512_rsqrt14_pd(a)) {
+        if let Some(root) = apply_native(simd, a, |set: V4, a| set.avx512f._mm512_rsqrt14_pd(a)) {
             return Some((root, &TERMS));
         }
         None

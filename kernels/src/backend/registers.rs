@@ -1,7 +1,9 @@
 //! Machine over registers: one implementation of every instruction for any register file.
 
 use crate::isa::list::for_each_op;
-use crate::isa::{ArrayColumn, Element, LaneCounter, Machine, Memory, Slot, Storage, Vector, same};
+use crate::isa::{
+    ArrayColumn, Element, LaneCounter, Machine, Memory, Slot, Storage, Vector, is_same_storage,
+};
 use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
@@ -116,7 +118,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn load_shifted<T: Element>(self, column: ArrayColumn<T>, shift: isize) -> R::V {
         let from = self.place(column, shift);
-        if same::<T, R::Lane>() {
+        if is_same_storage::<T, R::Lane>() {
             // SAFETY: T is Lane, and the admitted footprint covers the LANES elements from base + shift on.
             unsafe { self.registers.load(from.cast()) }
         } else {
@@ -128,7 +130,7 @@ impl<'m, R: Registers> Strip<'m, R> {
     #[inline(always)]
     pub(crate) fn store<T: Element>(self, column: ArrayColumn<T>, value: R::V) {
         let to = self.place(column, 0);
-        if same::<T, R::Lane>() {
+        if is_same_storage::<T, R::Lane>() {
             // SAFETY: T is Lane, and the admitted footprint marks the LANES elements from base on as written.
             unsafe { self.registers.store(to.cast(), value) };
         } else {

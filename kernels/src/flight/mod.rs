@@ -7,7 +7,7 @@ mod partners;
 
 use crate::backend::{Registers, Scalar};
 use crate::isa::{Predicate, Vector};
-pub use partners::{EarliestCollision, MOST_PARTNERS, ROW_UNIT, earliest};
+pub use partners::{EarliestCollision, MOST_PARTNERS, ROW_UNIT, earliest_collision};
 
 /// State of a disc after its last event, in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,13 +146,13 @@ impl<V: Vector> FlightState<V> {
 /// they clearly do not before the `horizon` (time). Across periodic sides, the images that are nearest at `now` collide. The time
 /// is computed from the later of the two local times, so it depends neither on the time of the query nor on the order of the two.
 #[inline(always)]
-pub fn meeting(space: &Space, a: &FlyingDisc, b: &FlyingDisc, now: f64, horizon: f64) -> f64 {
-    meetings(Scalar::default(), space, &FlightState::of(a), &FlightState::of(b), now, horizon)
+pub fn collision_time(space: &Space, a: &FlyingDisc, b: &FlyingDisc, now: f64, horizon: f64) -> f64 {
+    collision_times(Scalar::default(), space, &FlightState::of(a), &FlightState::of(b), now, horizon)
 }
 
 /// Implementation of [`meeting`] for a register of pairs.
 #[inline(always)]
-fn meetings<R: Registers<Lane = f64>>(
+fn collision_times<R: Registers<Lane = f64>>(
     registers: R,
     space: &Space,
     a: &FlightState<R::V>,
@@ -221,8 +221,8 @@ mod tests {
 
     const PERIODIC: [Option<f64>; 2] = [Some(20.0); 2];
 
-    fn when(space: &Space, a: &FlyingDisc, b: &FlyingDisc) -> f64 {
-        meeting(space, a, b, 0.0, f64::INFINITY)
+    fn collision_time_from_start(space: &Space, a: &FlyingDisc, b: &FlyingDisc) -> f64 {
+        collision_time(space, a, b, 0.0, f64::INFINITY)
     }
 
     /// By hand: head on, half a radius off the line of centres, and a miss.
@@ -230,16 +230,20 @@ mod tests {
     fn pairs_collide_at_contact() {
         let space = Space::new(PERIODIC, [0.0; 2]);
         let still = disc([5.0, 5.0], [0.0; 2]);
-        assert_eq!(when(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0])), 1.0);
-        let off = when(&space, &still, &disc([8.0, 5.5], [-1.0, 0.0]));
+        assert_eq!(collision_time_from_start(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0])), 1.0);
+        let off = collision_time_from_start(&space, &still, &disc([8.0, 5.5], [-1.0, 0.0]));
         assert!((off - (3.0 - 0.75f64.sqrt())).abs() < 1e-15, "{off}");
-        assert_eq!(when(&space, &still, &disc([8.0, 6.1], [-1.0, 0.0])), f64::INFINITY);
-        assert_eq!(when(&space, &still, &disc([8.0, 5.0], [1.0, 0.0])), f64::INFINITY);
+        assert_eq!(collision_time_from_start(&space, &still, &disc([8.0, 6.1], [-1.0, 0.0])), f64::INFINITY);
+        assert_eq!(collision_time_from_start(&space, &still, &disc([8.0, 5.0], [1.0, 0.0])), f64::INFINITY);
         // The pair is omitted if the horizon is clearly nearer.
-        let before = |horizon: f64| meeting(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0]), 0.0, horizon);
+        let before =
+            |horizon: f64| collision_time(&space, &still, &disc([8.0, 5.0], [-2.0, 0.0]), 0.0, horizon);
         assert_eq!([before(1.0), before(0.3)], [1.0, f64::INFINITY]);
         // Across a periodic side.
-        assert_eq!(when(&space, &disc([1.0, 5.0], [0.0; 2]), &disc([18.0, 5.0], [1.0, 0.0])), 2.0);
+        assert_eq!(
+            collision_time_from_start(&space, &disc([1.0, 5.0], [0.0; 2]), &disc([18.0, 5.0], [1.0, 0.0])),
+            2.0
+        );
     }
 
     /// Two discs that move apart collide on the other side of the box.
@@ -247,7 +251,7 @@ mod tests {
     fn the_currently_nearest_image_collides() {
         let space = Space::new(PERIODIC, [0.0; 2]);
         let (a, b) = (disc([9.0, 5.0], [-1.0, 0.0]), disc([11.0, 5.0], [1.0, 0.0]));
-        let at = |now: f64| meeting(&space, &a, &b, now, f64::INFINITY);
+        let at = |now: f64| collision_time(&space, &a, &b, now, f64::INFINITY);
         assert_eq!([at(0.0), at(5.0), at(8.0)], [f64::INFINITY, 8.5, 8.5]);
     }
 
@@ -256,12 +260,12 @@ mod tests {
     fn growing_discs_collide_sooner() {
         let growing = |rate: f64| Space::new([None; 2], [0.0; 2]).growing(RadiusGrowth { from: 0.5, rate });
         let (a, b) = (disc([0.0; 2], [0.0; 2]), disc([1.0, 0.0], [0.0; 2]));
-        assert_eq!(when(&growing(0.25), &a, &b), 2.0);
+        assert_eq!(collision_time_from_start(&growing(0.25), &a, &b), 2.0);
         let leaving = disc([1.0, 0.0], [0.2, 0.0]);
-        assert!((when(&growing(0.25), &a, &leaving) - 10.0).abs() < 1e-12);
-        assert_eq!(when(&growing(0.15), &a, &leaving), f64::INFINITY);
+        assert!((collision_time_from_start(&growing(0.25), &a, &leaving) - 10.0).abs() < 1e-12);
+        assert_eq!(collision_time_from_start(&growing(0.15), &a, &leaving), f64::INFINITY);
         let coming = disc([1.0, 0.0], [-0.25, 0.0]);
-        assert_eq!(when(&growing(0.25), &a, &coming), 1.0);
+        assert_eq!(collision_time_from_start(&growing(0.25), &a, &coming), 1.0);
     }
 
     /// Discs that fall together collide as without gravity, for any local times.
@@ -269,11 +273,11 @@ mod tests {
     fn gravity_changes_no_collision_time() {
         let falling = Space::new([None; 2], [0.0, -2.0]);
         let (a, b) = (disc([0.0, 9.0], [0.0, 0.0]), disc([3.0, 9.0], [-1.0, 0.0]));
-        assert_eq!(when(&falling, &a, &b), 2.0);
+        assert_eq!(collision_time_from_start(&falling, &a, &b), 2.0);
         // The same flight, from a later moment of one of the discs.
         let (position, velocity) = (b.at(&falling, 0.5), b.velocity_at(&falling, 0.5));
         let later = FlyingDisc { position, velocity, time: 0.5, ..b };
-        assert!((when(&falling, &a, &later) - 2.0).abs() < 1e-15);
+        assert!((collision_time_from_start(&falling, &a, &later) - 2.0).abs() < 1e-15);
         assert_eq!(a.at(&falling, 2.0), [0.0, 5.0]);
     }
 }

@@ -1,6 +1,6 @@
 //! Next collision of a disc among all its partners, one register of partners at a time.
 
-use super::{FlightState, FlyingDisc, Space, meetings};
+use super::{FlightState, FlyingDisc, Space, collision_times};
 use crate::backend::Registers;
 use crate::isa::{Predicate, Vector};
 
@@ -29,7 +29,7 @@ pub struct EarliestCollision {
 /// # Panics
 /// If a row is longer than [`MOST_PARTNERS`] or not a multiple of [`ROW_UNIT`], or a number is beyond the discs.
 #[inline(always)]
-pub fn earliest<R: Registers<Lane = f64>>(
+pub fn earliest_collision<R: Registers<Lane = f64>>(
     registers: R,
     space: &Space,
     discs: &[FlyingDisc],
@@ -72,7 +72,7 @@ pub fn earliest<R: Registers<Lane = f64>>(
             time: column(&|it| discs[it].time),
             radius: column(&|it| discs[it].radius),
         };
-        let met = meetings(registers, space, &flight, &others, now, f64::INFINITY);
+        let met = collision_times(registers, space, &flight, &others, now, f64::INFINITY);
         let here = (count - begin).min(ROW_UNIT);
         // SAFETY: any of the first seventeen entries has sixteen from it on.
         let met = met.max(unsafe { registers.load(ABSENT.0.as_ptr().add(ROW_UNIT - here)) });
@@ -135,7 +135,7 @@ struct LaneBuffer([f64; 16]);
 
 #[cfg(test)]
 mod tests {
-    use super::super::{RadiusGrowth, meeting};
+    use super::super::{RadiusGrowth, collision_time};
     use super::*;
     use crate::backend::{InstructionSet, RegisterTask, dispatch_native};
     use crate::noise::{RandomPurpose, Stream};
@@ -154,7 +154,15 @@ mod tests {
         #[inline(always)]
         fn on<R: Registers<Lane = f64>>(self, registers: R) {
             let PartnerSearch { space, discs, known, partners, times, found } = self;
-            *found = Some(earliest(registers, space, discs, known, (0, partners.0, partners.1), 3.0, times));
+            *found = Some(earliest_collision(
+                registers,
+                space,
+                discs,
+                known,
+                (0, partners.0, partners.1),
+                3.0,
+                times,
+            ));
         }
     }
 
@@ -197,7 +205,7 @@ mod tests {
                 };
                 let expected: Vec<f64> = discs[1..]
                     .iter()
-                    .map(|disc| meeting(&space, &discs[0], disc, 3.0, f64::INFINITY))
+                    .map(|disc| collision_time(&space, &discs[0], disc, 3.0, f64::INFINITY))
                     .collect();
                 meetings += expected.iter().filter(|time| time.is_finite()).count();
                 let least = expected.iter().copied().fold(f64::INFINITY, f64::min);

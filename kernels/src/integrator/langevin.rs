@@ -27,7 +27,12 @@ pub struct Stochastic<const OLD: bool> {
 impl<const OLD: bool> Stochastic<OLD> {
     /// Total acceleration from the force, the friction at a velocity, and the noise.
     #[inline(always)]
-    fn whole<R: Registers>(&self, context: &Context<R>, velocity: R::V, acceleration: R::V) -> R::V {
+    fn total_acceleration<R: Registers>(
+        &self,
+        context: &Context<R>,
+        velocity: R::V,
+        acceleration: R::V,
+    ) -> R::V {
         let Bath { friction, temperature } = self.bath;
         let strength = (2.0 * friction * temperature / context.dt()).sqrt();
         let bath = context.uniform(strength) * context.normal() - context.uniform(friction) * velocity;
@@ -46,14 +51,14 @@ impl<const OLD: bool> Scheme for Stochastic<OLD> {
 
     #[inline(always)]
     fn begin<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
-        row[2] = self.whole(context, row[1], acceleration);
+        row[2] = self.total_acceleration(context, row[1], acceleration);
     }
 
     #[inline(always)]
     fn correct<R: Registers>(&self, context: &Context<R>, row: &mut [R::V; DERIVATIVES], acceleration: R::V) {
         let half = context.uniform(0.5 * context.dt());
         let velocity = if OLD { row[1] - row[2] * half } else { row[1] };
-        let whole = self.whole(context, velocity, acceleration);
+        let whole = self.total_acceleration(context, velocity, acceleration);
         kick(|value| context.uniform(value), context.dt(), row, whole);
     }
 

@@ -52,12 +52,17 @@ pub(crate) fn acceleration<V: Vector>(
     force: V,
     inverse: V,
 ) -> V {
-    pulled(uniform, gravity, freedom, force * inverse)
+    with_gravity(uniform, gravity, freedom, force * inverse)
 }
 
 /// Adds gravity to an acceleration.
 #[inline(always)]
-fn pulled<V: Vector>(uniform: impl Fn(f64) -> V, gravity: [f64; 2], freedom: usize, acceleration: V) -> V {
+fn with_gravity<V: Vector>(
+    uniform: impl Fn(f64) -> V,
+    gravity: [f64; 2],
+    freedom: usize,
+    acceleration: V,
+) -> V {
     if freedom < 2 && gravity[freedom] != 0.0 {
         acceleration + uniform(gravity[freedom])
     } else {
@@ -82,7 +87,7 @@ fn gathered_acceleration<S: Element, P: Element, M: Machine>(
     let inverse = inertia.inverse(freedom, uniform, || m.load(Slot::<S>::new(own)));
     let acceleration = force * inverse;
     m.section("gravity");
-    pulled(uniform, gravity, freedom, acceleration)
+    with_gravity(uniform, gravity, freedom, acceleration)
 }
 
 /// Context of a scheme beside a row of the state: the step, and the discs in the lanes.

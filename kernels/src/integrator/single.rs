@@ -64,7 +64,7 @@ mod tests {
     use crate::integrator::velocity_verlet::VelocityVerlet;
 
     /// A quarter of a period of x″ = −x from rest at 1 ends at the origin with velocity −1.
-    fn off<C: Scheme>(scheme: C, steps: u32) -> f64 {
+    fn oscillator_error<C: Scheme>(scheme: C, steps: u32) -> f64 {
         let spring = |position: f64, _: f64| -position;
         let dt = std::f64::consts::FRAC_PI_2 / f64::from(steps);
         let mut single = SingleFreedom::new(scheme, dt).starting(1.0, 0.0, spring);
@@ -76,9 +76,9 @@ mod tests {
     #[test]
     fn errors_have_the_order_of_the_scheme() {
         let order = |off: &dyn Fn(u32) -> f64| (off(40) / off(80)).log2();
-        assert!((order(&|n| off(VelocityVerlet, n)) - 2.0).abs() < 0.1);
-        let gear = order(&|n| off(Gear::<4>::new(Acceleration::OfPositions), n));
+        assert!((order(&|n| oscillator_error(VelocityVerlet, n)) - 2.0).abs() < 0.1);
+        let gear = order(&|n| oscillator_error(Gear::<4>::new(Acceleration::OfPositions), n));
         assert!((1.9..4.5).contains(&gear), "{gear}");
-        assert!(off(Gear::<5>::new(Acceleration::OfPositions), 80) < 1e-4);
+        assert!(oscillator_error(Gear::<5>::new(Acceleration::OfPositions), 80) < 1e-4);
     }
 }

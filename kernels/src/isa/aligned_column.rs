@@ -81,7 +81,7 @@ thread_local! {
 }
 
 /// Allocates `bytes` bytes that begin at the cache line of the column with this number.
-fn room(number: usize, bytes: usize) -> (Arc<Pages>, NonNull<u8>) {
+fn allocate_line(number: usize, bytes: usize) -> (Arc<Pages>, NonNull<u8>) {
     let line = number * APART * LINE % ALIKE;
     // The first address from `taken` on that maps to that line.
     let behind = |taken: usize| taken.next_multiple_of(ALIKE) + line;
@@ -127,21 +127,21 @@ impl<X: Clone> AlignedColumn<X> {
     /// Column with the same value `length` times.
     #[inline]
     pub fn filled(number: usize, value: X, length: usize) -> AlignedColumn<X> {
-        AlignedColumn::written(number, length, |_| value.clone())
+        AlignedColumn::filled_by(number, length, |_| value.clone())
     }
 
     #[inline]
     fn from_vec(number: usize, values: &[X]) -> AlignedColumn<X> {
-        AlignedColumn::written(number, values.len(), |at| values[at].clone())
+        AlignedColumn::filled_by(number, values.len(), |at| values[at].clone())
     }
 
     #[inline]
-    fn written(number: usize, length: usize, value: impl Fn(usize) -> X) -> AlignedColumn<X> {
+    fn filled_by(number: usize, length: usize, value: impl Fn(usize) -> X) -> AlignedColumn<X> {
         const { assert!(align_of::<X>() <= LINE && !std::mem::needs_drop::<X>()) }
         if length == 0 {
             return AlignedColumn::default();
         }
-        let (pages, start) = room(number, length * size_of::<X>());
+        let (pages, start) = allocate_line(number, length * size_of::<X>());
         let start = start.cast::<X>();
         for at in 0..length {
             // SAFETY: `room` has allocated the bytes of `length` elements, from the beginning of a line, for this column alone.
@@ -153,7 +153,7 @@ impl<X: Clone> AlignedColumn<X> {
 
 /// Memory in bytes that a column of some bytes uses: a long one has huge pages to itself.
 #[inline]
-pub fn taken(bytes: f64) -> f64 {
+pub fn column_memory(bytes: f64) -> f64 {
     let large = LARGE as f64;
     if bytes > large / 4.0 { (bytes / large).ceil() * large } else { bytes }
 }
@@ -166,7 +166,7 @@ impl<X: Element> AlignedColumn<X> {
             return AlignedColumn::default();
         }
         // Pages are zero until written, every part of them is allocated once, and zero bits are the number 0.
-        let (pages, start) = room(number, length * size_of::<X>());
+        let (pages, start) = allocate_line(number, length * size_of::<X>());
         AlignedColumn { number, start: start.cast(), length, _pages: Some(pages) }
     }
 }

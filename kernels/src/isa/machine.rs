@@ -55,6 +55,6 @@ pub unsafe trait Kernel {
 
 /// True if two storage types are the same.
 #[inline]
-pub(crate) const fn same<A: Storage, B: Storage>() -> bool {
+pub(crate) const fn is_same_storage<A: Storage, B: Storage>() -> bool {
     A::TABLE == B::TABLE
 }

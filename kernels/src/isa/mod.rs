@@ -13,7 +13,7 @@ mod vector;
 pub use aligned_column::AlignedColumn;
 pub use element::{Element, Storage};
 pub use footprint::{Access, Footprint};
-pub(crate) use machine::same;
+pub(crate) use machine::is_same_storage;
 pub use machine::{Kernel, Machine};
 pub(crate) use memory::ArrayColumn;
 pub use memory::{COUNTERS, LaneCounter, Memory, ProgramError};

@@ -179,8 +179,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
         if !FRICTION {
             env.section("sums"); // (10), (11)
-            share(env, place, ParticleSum::Force(X), fn_ * nx);
-            share(env, place, ParticleSum::Force(Y), fn_ * ny);
+            add_pair_force(env, place, ParticleSum::Force(X), fn_ * nx);
+            add_pair_force(env, place, ParticleSum::Force(Y), fn_ * ny);
             if env.counts_dissipation() {
                 env.section("dissipation");
                 dissipate((elastic - normal) * separation);
@@ -206,8 +206,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let fs = E::V::select(contact, shear, zero); // (9)
 
         env.section("sums"); // (10)-(12)
-        share(env, place, ParticleSum::Force(X), fn_ * nx - fs * ny);
-        share(env, place, ParticleSum::Force(Y), fn_ * ny + fs * nx);
+        add_pair_force(env, place, ParticleSum::Force(X), fn_ * nx - fs * ny);
+        add_pair_force(env, place, ParticleSum::Force(Y), fn_ * ny + fs * nx);
         env.own_add(ParticleSum::Torque, zero - arms[0] * fs);
         if E::BOTH_PARTNERS {
             env.partner_sub(ParticleSum::Torque, place, arms[1] * fs);
@@ -223,7 +223,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
 /// Adds a force to the own disc and its reaction to the partner.
 #[inline(always)]
-fn share<E: Env<2>>(env: E, place: E::Place, sum: ParticleSum, force: E::V) {
+fn add_pair_force<E: Env<2>>(env: E, place: E::Place, sum: ParticleSum, force: E::V) {
     env.own_add(sum, force);
     if E::BOTH_PARTNERS {
         env.partner_sub(sum, place, force);

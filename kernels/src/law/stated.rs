@@ -43,7 +43,7 @@ impl<E, L> StatedEnv<E, L> {
         L: Law<DIM>,
     {
         if const { bits_of_fields(L::FIELDS) } & bit_of_field(field) == 0 {
-            unstated(field.name());
+            panic_unstated(field.name());
         }
     }
 
@@ -53,7 +53,7 @@ impl<E, L> StatedEnv<E, L> {
         L: Law<DIM>,
     {
         if const { bits_of_sums(L::SUMS) } & bit_of_sum(sum) == 0 {
-            unstated(sum.name());
+            panic_unstated(sum.name());
         }
     }
 }
@@ -120,7 +120,7 @@ const fn bits_of_sums(sums: &[ParticleSum]) -> u32 {
 #[cold]
 #[inline(never)]
 #[expect(clippy::panic, reason = "`check` rejects a law that uses unstated quantities before it runs")]
-fn unstated(what: &'static str) -> ! {
+fn panic_unstated(what: &'static str) -> ! {
     panic!("{}", ProgramError::Unstated(what))
 }
 

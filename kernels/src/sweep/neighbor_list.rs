@@ -130,7 +130,7 @@ impl CellOffsets {
     }
 
     /// Number of the mask offset from `own` to `there`, with the vector between their centres and the periods crossed.
-    fn place(&self, own: [isize; 2], there: [isize; 2]) -> Option<(u16, [f64; 2], [f64; 2])> {
+    fn offset_between(&self, own: [isize; 2], there: [isize; 2]) -> Option<(u16, [f64; 2], [f64; 2])> {
         let mut offset = [0; 2];
         let mut periods = [0.0; 2];
         for axis in 0..2 {
@@ -261,7 +261,7 @@ impl<P: Precision> Env<2> for &ListEnv<'_, P> {
 
 /// Evaluates a law along the lists. `write(disc, sums)` receives the sums (force along x, y, torque) of each of the first
 /// `grains` discs. Pairs farther apart than `reach` (length) are skipped. `asked` selects the observations beside the sums.
-pub fn walk<P: Precision, L: Law<2>>(
+pub fn sweep_lists<P: Precision, L: Law<2>>(
     law: &L,
     lists: &NeighbourLists,
     cell_offsets: &CellOffsets,
@@ -295,7 +295,8 @@ pub fn walk<P: Precision, L: Law<2>>(
         contacts.clear();
         for &j in lists.of(i) {
             let j = j as usize;
-            let Some((place, cell_offset, periods)) = cell_offsets.place(places[i], places[j]) else {
+            let Some((place, cell_offset, periods)) = cell_offsets.offset_between(places[i], places[j])
+            else {
                 continue;
             };
             let displacement = [0, 1].map(|axis| {

@@ -11,7 +11,7 @@ use std::cell::Cell;
 use std::ops::Range;
 use std::sync::atomic::AtomicU32;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use waiting::each;
+use waiting::run_stages;
 
 thread_local! {
     /// True if this thread does all parts itself.
@@ -27,7 +27,7 @@ pub(crate) fn threads() -> usize {
 /// Runs `work`. If it is `little`, this thread does all of its parts, because others would only begin when it is done. No result
 /// depends on the threads.
 #[inline]
-pub fn alone_if<R>(little: bool, work: impl FnOnce() -> R) -> R {
+pub fn single_threaded_if<R>(little: bool, work: impl FnOnce() -> R) -> R {
     /// Restores the previous value, also after a panic.
     struct Before(bool);
 
@@ -56,7 +56,7 @@ pub(crate) fn on_threads<T: Send, R: Send>(
     }
     let slots: Vec<Mutex<(Option<T>, Option<R>)>> =
         parts.into_iter().map(|part| Mutex::new((Some(part), None))).collect();
-    each(threads(), [1, slots.len()], &|_, number| {
+    run_stages(threads(), [1, slots.len()], &|_, number| {
         let mut slot = locked(&slots[number]);
         slot.1 = slot.0.take().map(&work);
     });
@@ -81,7 +81,7 @@ pub(crate) fn in_stages<T: Send, E: Send>(
     }
     let slots: Vec<Mutex<&mut T>> = parts.iter_mut().map(Mutex::new).collect();
     let failure = Mutex::new(None);
-    each(threads(), [stages, slots.len()], &|stage, number| {
+    run_stages(threads(), [stages, slots.len()], &|stage, number| {
         if let Err(cause) = work(&mut locked(&slots[number]), stage) {
             locked(&failure).get_or_insert(cause);
         }
@@ -145,7 +145,7 @@ pub fn in_parts<T: Send>([a, b]: [&mut [T]; 2], work: impl Fn(usize, [&mut [T]; 
 #[inline]
 pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -> Vec<T> {
     let mut now = vec![T::default(); order.len()];
-    put_in_order(&mut now, column, order);
+    reorder_into(&mut now, column, order);
     now
 }
 
@@ -154,7 +154,7 @@ pub fn reordered<T: Copy + Default + Send + Sync>(column: &[T], order: &[u32]) -
 /// # Panics
 /// If `order` names an entry that does not exist, or is too short.
 #[inline]
-pub fn put_in_order<T: Copy + Send + Sync>(now: &mut [T], column: &[T], order: &[u32]) {
+pub fn reorder_into<T: Copy + Send + Sync>(now: &mut [T], column: &[T], order: &[u32]) {
     in_pieces(now, |first, piece| {
         let before = &order[first..first + piece.len()];
         piece.iter_mut().zip(before).for_each(|(to, &before)| *to = column[before as usize]);
@@ -163,7 +163,7 @@ pub fn put_in_order<T: Copy + Send + Sync>(now: &mut [T], column: &[T], order: &
 
 /// True if one thread does all pieces of a column.
 #[inline]
-pub(crate) fn is_alone(length: usize) -> bool {
+pub(crate) fn is_single_threaded(length: usize) -> bool {
     length <= PIECE || threads() == 1
 }
 
@@ -225,15 +225,15 @@ mod tests {
     #[test]
     fn little_work_is_done_by_one_thread() {
         let who = || on_threads(0..50, |_: usize| std::thread::current().id());
-        let found = on(3, || alone_if(true, || (std::thread::current().id(), who())));
+        let found = on(3, || single_threaded_if(true, || (std::thread::current().id(), who())));
         assert!(found.1.iter().all(|id| *id == found.0));
-        assert_eq!(on(3, || alone_if(false, threads)), 3);
+        assert_eq!(on(3, || single_threaded_if(false, threads)), 3);
         // The setting is restored at the end, also after a panic.
-        let broken = || on(1, || alone_if(true, || panic!("on purpose")));
+        let broken = || on(1, || single_threaded_if(true, || panic!("on purpose")));
         assert!(std::panic::catch_unwind(broken).is_err());
         assert_eq!(
             on(2, || {
-                alone_if(true, || ());
+                single_threaded_if(true, || ());
                 threads()
             }),
             2

@@ -11,7 +11,7 @@ use std::cell::RefCell;
 ///
 /// A thread without parts spins until the others finish: a sleeping one would have to be woken for the next stage or call, which
 /// takes longer. Only running parts are waited for, so no thread waits for one that waits.
-pub(crate) fn each(threads: usize, [stages, parts]: [usize; 2], work: &(dyn Fn(usize, usize) + Sync)) {
+pub(crate) fn run_stages(threads: usize, [stages, parts]: [usize; 2], work: &(dyn Fn(usize, usize) + Sync)) {
     if parts <= 1 {
         // Nothing to share: the other threads are left alone.
         (0..stages).for_each(|stage| (0..parts).for_each(|part| work(stage, part)));

@@ -40,7 +40,7 @@ static COLOURINGS: [Colouring; 6] = [
         doc: "speed",
         label: "speed",
         si: Some("m/s"),
-        of: |frame, _| Ok(of_each(frame, |it| it.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())),
+        of: |frame, _| Ok(grain_values(frame, |it| it.velocity.iter().map(|v| v * v).sum::<f64>().sqrt())),
         takes_forces: false,
         ends: |speeds| Ok([0.0, quantile(speeds, MOST).unwrap_or(0.0)]),
     },
@@ -49,7 +49,7 @@ static COLOURINGS: [Colouring; 6] = [
         doc: "hexatic order |ψ6|, 1 in a hexagonal crystal (discs in a box)",
         label: "hexatic order |ψ6|",
         si: None,
-        of: |frame, _| orders(frame),
+        of: |frame, _| hexatic_magnitudes(frame),
         takes_forces: false,
         ends: |_| Ok([0.0, 1.0]),
     },
@@ -67,7 +67,7 @@ static COLOURINGS: [Colouring; 6] = [
         doc: "angular velocity, counter-clockwise (rotating discs)",
         label: "spin",
         si: Some("1/s"),
-        of: |frame, _| Ok(of_each(frame, |disc| disc.omega)),
+        of: |frame, _| Ok(grain_values(frame, |disc| disc.omega)),
         takes_forces: false,
         ends: |spins| {
             let [low, high] = [1.0 - MOST, MOST].map(|part| quantile(spins, part).unwrap_or(0.0));
@@ -80,7 +80,7 @@ static COLOURINGS: [Colouring; 6] = [
         doc: "radius",
         label: "radius",
         si: Some("m"),
-        of: |frame, _| Ok(of_each(frame, |disc| disc.radius)),
+        of: |frame, _| Ok(grain_values(frame, |disc| disc.radius)),
         takes_forces: false,
         ends: first_and_last,
     },
@@ -89,13 +89,13 @@ static COLOURINGS: [Colouring; 6] = [
         doc: "particle number, to see mixing",
         label: "number",
         si: None,
-        of: |frame, _| Ok(of_each(frame, |particle| f64::from(particle.id))),
+        of: |frame, _| Ok(grain_values(frame, |particle| f64::from(particle.id))),
         takes_forces: false,
         ends: first_and_last,
     },
 ];
 
-fn of_each(frame: &ParticleFrame, value: impl Fn(&Particle) -> f64) -> Vec<f64> {
+fn grain_values(frame: &ParticleFrame, value: impl Fn(&Particle) -> f64) -> Vec<f64> {
     frame.particles.grains().iter().map(value).collect()
 }
 
@@ -104,7 +104,7 @@ fn first_and_last(values: &[f64]) -> Result<[f64; 2], &'static str> {
 }
 
 /// Box of a frame, or a closed box around the discs if the frame has none.
-fn room(frame: &ParticleFrame) -> Domain {
+fn frame_domain(frame: &ParticleFrame) -> Domain {
     let grains = frame.particles.grains();
     if window::is_endless(frame) {
         let ends = |axis: usize| {
@@ -122,14 +122,14 @@ fn room(frame: &ParticleFrame) -> Domain {
 /// Sum of the magnitudes of the forces on each grain.
 fn forces_on(frame: &ParticleFrame, forces: Option<&PairForces>) -> Result<Vec<f64>, &'static str> {
     let forces = forces.ok_or("the scene has no continuous pair forces, or cannot be read")?;
-    let setting = StructureSetting::new(room(frame), &frame.particles);
+    let setting = StructureSetting::new(frame_domain(frame), &frame.particles);
     let mut sums = forces_on_each(&setting, frame.particles.all(), forces);
     sums.truncate(frame.particles.grain_count());
     Ok(sums)
 }
 
 /// |ψ6| of each grain.
-fn orders(frame: &ParticleFrame) -> Result<Vec<f64>, &'static str> {
+fn hexatic_magnitudes(frame: &ParticleFrame) -> Result<Vec<f64>, &'static str> {
     let grains = frame.particles.grains();
     if grains.iter().any(|grain| grain.position[2] != 0.0) {
         return Err("bodies in space have no hexatic order");
@@ -137,7 +137,7 @@ fn orders(frame: &ParticleFrame) -> Result<Vec<f64>, &'static str> {
     if grains.is_empty() {
         return Ok(vec![]);
     }
-    let setting = StructureSetting::new(room(frame), &frame.particles);
+    let setting = StructureSetting::new(frame_domain(frame), &frame.particles);
     Ok(hexatic_orders(&setting, &frame.particles).into_iter().map(|[x, y]| x.hypot(y)).collect())
 }
 
@@ -190,7 +190,7 @@ impl RunColouring {
     /// # Errors
     /// If the particles have no such values.
     pub(super) fn values(&self, frame: &ParticleFrame) -> Result<Vec<f64>, ColouringError> {
-        (self.colouring.of)(frame, self.forces.as_ref()).map_err(|why| self.none(why))
+        (self.colouring.of)(frame, self.forces.as_ref()).map_err(|why| self.unavailable(why))
     }
 
     /// Values of the lowest and the highest colour.
@@ -200,7 +200,7 @@ impl RunColouring {
     pub(super) fn ends(&self, mut values: Vec<f64>) -> Result<[f64; 2], ColouringError> {
         values.retain(|value| value.is_finite());
         values.sort_by(f64::total_cmp);
-        let ends = (self.colouring.ends)(&values).map_err(|why| self.none(why))?;
+        let ends = (self.colouring.ends)(&values).map_err(|why| self.unavailable(why))?;
         // Equal values get the middle colour; zeros get the lowest.
         Ok(match ends {
             [low, high] if low < high => ends,
@@ -209,7 +209,7 @@ impl RunColouring {
         })
     }
 
-    fn none(&self, why: &'static str) -> ColouringError {
+    fn unavailable(&self, why: &'static str) -> ColouringError {
         let others =
             COLOURINGS.iter().map(|it| it.word).filter(|word| *word != self.colouring.word).collect();
         ColouringError { word: self.colouring.word, why, others }

@@ -1,7 +1,7 @@
 //! Film of a run: the frames of its trajectory in one HTML page.
 
 use super::colouring::{ColouringError, RunColouring};
-use super::particles::{SHOWN, WIDTH, point};
+use super::particles::{SHOWN, WIDTH, point_radius};
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::section::{Film, FilmFrame as Moment, FilmSide};
@@ -11,7 +11,7 @@ use stripmine_physics::io::FORMATS;
 use stripmine_physics::io::extxyz::ParticleFrame;
 use stripmine_physics::io::output_format::OutputFormat;
 use stripmine_physics::io::trajectory::{FrameReading, Trajectory, TrajectoryError};
-use stripmine_physics::number::{counted, significant};
+use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::particles::{Particle, ParticleKind};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{ErrorClass, FilePlace, Reported};
@@ -32,7 +32,7 @@ pub(super) enum FilmError {
     #[error(
         "{} has no frames for a film\n  help: run the scene with --set {}, which writes a frame every run.snapshot_every{others}",
         quoted::path(file),
-        keys()
+        film_keys()
     )]
     NoFrame {
         /// The trajectory.
@@ -69,13 +69,13 @@ impl Reported for FilmError {
 }
 
 /// Output keys whose files a film can be made from.
-fn keys() -> String {
+fn film_keys() -> String {
     let read = FORMATS.iter().filter(|format| format.is_read());
     read.map(|format| format!("output.{}=true", format.key)).collect::<Vec<_>>().join(" or ")
 }
 
 /// Files of a run that cannot be used for a film, with what they lack.
-fn others(run: &Path) -> String {
+fn unusable_files(run: &Path) -> String {
     let lacking = |format: &OutputFormat| match format.reading {
         FrameReading::Lacks(what) => Some(format!("; {} has no {what}", format.file)),
         FrameReading::Opens(_) | FrameReading::Never => None,
@@ -95,7 +95,7 @@ pub(super) fn film(run: &Path, colours: &RunColouring) -> Result<(Film, Vec<Stri
         reel.add(frame?, colours)?;
     }
     let Some((last, cast)) = reel.last.take() else {
-        return Err(FilmError::NoFrame { file, others: others(run) });
+        return Err(FilmError::NoFrame { file, others: unusable_files(run) });
     };
     let scene = scene_of(run);
     let (mut film, notes) = reel.film(&last, cast, colours, scene.as_ref())?;
@@ -180,14 +180,14 @@ impl FilmFrames {
         let some = (self.kept.len() * cast.particles.len()).div_ceil(LOOKED_AT).max(1);
         let places: Vec<[f64; 3]> = grains().step_by(some).map(|seen| seen.position).collect();
         let bounds = window::bounds(last, scene, &places, AXES);
-        let [[left, right], [low, high]] = window::shown(last, &places, AXES, bounds);
+        let [[left, right], [low, high]] = window::visible_window(last, &places, AXES, bounds);
         let shades = colours.ends(grains().map(|seen| seen.value).collect())?;
         let is_seen = |[x, y, _]: [f64; 3], radius: f64| {
             x > left - radius && x < right + radius && y > low - radius && y < high + radius
         };
-        let point = point(cast.particles.len());
+        let point = point_radius(cast.particles.len());
         let of_a_point = point / WIDTH * (right - left).max(high - low);
-        let is_of_points = window::is_of_points(last, bounds);
+        let is_of_points = window::has_point_bodies(last, bounds);
         let radius = |particle: &Particle| if is_of_points { of_a_point } else { particle.radius };
         // Fixed walls are drawn once.
         let is_still = |place: usize| {
@@ -220,12 +220,12 @@ impl FilmFrames {
             .collect();
         let window = [[left, low], [right, high]];
         let grain_count = cast.particles.iter().filter(|it| it.kind == ParticleKind::Grain).count();
-        let gravity = scene.and_then(|scene| window::pair(scene, "gravity")).unwrap_or([0.0; 2]);
+        let gravity = scene.and_then(|scene| window::domain_pair(scene, "gravity")).unwrap_or([0.0; 2]);
         let [width, height] = [right - left, high - low];
         let film = Film {
             title: format!(
                 "{}, time {} to {}",
-                counted(grain_count, "particle", "particles"),
+                count_with_noun(grain_count, "particle", "particles"),
                 self.kept.first().map_or(0.0, |(time, _)| *time),
                 self.kept.last().map_or(0.0, |(time, _)| *time)
             ),
@@ -237,7 +237,7 @@ impl FilmFrames {
             fixed: fixed
                 .iter()
                 .map(|&place| &cast.particles[place])
-                .map(|wall| (wall.place(), wall.radius))
+                .map(|wall| (wall.planar_position(), wall.radius))
                 .collect(),
             frames,
             shade: colours.label(scene),

@@ -3,7 +3,7 @@
 use crate::report::figure::{ChartBand, Series, Style};
 use stripmine_physics::averages::{Average, AverageOutcome, AveragedRows, Estimate, RunAverages};
 use stripmine_physics::method::{Methods, QuantityKind, observer};
-use stripmine_physics::number::{significant, with_bar};
+use stripmine_physics::number::{significant, with_error_bar};
 
 /// Legend of the ribbons.
 pub(super) const RIBBON: &str = "mean ± 95 %, after the transient";
@@ -33,7 +33,7 @@ impl ColumnMeans {
     }
 
     /// Mean of a column's values; none without a mean, or if it is a rate.
-    fn drawn(&self, name: &str) -> Option<&Estimate> {
+    fn mean_estimate(&self, name: &str) -> Option<&Estimate> {
         match self.of_column(name)? {
             Average { of: "rate", .. } => None,
             Average { outcome: AverageOutcome::Mean(estimate), .. } => Some(estimate),
@@ -43,7 +43,8 @@ impl ColumnMeans {
 
     /// Ribbons of some columns, each with the hue of its curve.
     pub(super) fn ribbons(&self, names: &[&str]) -> Vec<Series> {
-        let estimates = names.iter().enumerate().filter_map(|(hue, name)| Some((hue, self.drawn(name)?)));
+        let estimates =
+            names.iter().enumerate().filter_map(|(hue, name)| Some((hue, self.mean_estimate(name)?)));
         let ribbon = |(place, (hue, it)): (usize, (usize, &Estimate))| {
             let spread = [it.mean - it.bar, it.mean + it.bar];
             let points = [it.equilibrated_at, self.ends[1]].map(|time| (time, it.mean, spread));
@@ -54,19 +55,19 @@ impl ColumnMeans {
     }
 
     /// Band over the time before every mean of some columns; none if a mean begins at the start.
-    pub(super) fn before(&self, names: &[&str]) -> Option<ChartBand> {
-        let cuts = names.iter().filter_map(|name| Some(self.drawn(name)?.equilibrated_at));
+    pub(super) fn transient_band(&self, names: &[&str]) -> Option<ChartBand> {
+        let cuts = names.iter().filter_map(|name| Some(self.mean_estimate(name)?.equilibrated_at));
         let first = cuts.reduce(f64::min)?;
         (first > self.ends[0]).then(|| ChartBand::of_x(BEFORE, [self.ends[0], first]))
     }
 
     /// Mean of a column with its error, or one or two words on why there is none.
-    pub(super) fn short(&self, name: &str) -> String {
+    pub(super) fn brief_text(&self, name: &str) -> String {
         self.of_column(name).map_or_else(String::new, |average| match &average.outcome {
             AverageOutcome::Mean(Estimate { mean, bar, .. }) if average.of == "rate" => {
-                format!("rate {}", with_bar(*mean, *bar))
+                format!("rate {}", with_error_bar(*mean, *bar))
             }
-            AverageOutcome::Mean(Estimate { mean, bar, .. }) => with_bar(*mean, *bar),
+            AverageOutcome::Mean(Estimate { mean, bar, .. }) => with_error_bar(*mean, *bar),
             AverageOutcome::Constant { .. } => "constant".to_owned(),
             AverageOutcome::TooShort { .. } => "too short".to_owned(),
             AverageOutcome::Changing { .. } => "changing".to_owned(),
@@ -76,14 +77,14 @@ impl ColumnMeans {
     }
 
     /// Short description of a column's mean.
-    pub(super) fn words(&self, name: &str) -> Option<String> {
+    pub(super) fn mean_text(&self, name: &str) -> Option<String> {
         let average = self.of_column(name)?;
         let rate = if average.of == "rate" { "rate " } else { "" };
         // Non-breaking blanks keep a mean and its error bar on one line.
         let whole = |text: String| text.replace(' ', "\u{a0}");
         Some(match &average.outcome {
             AverageOutcome::Mean(Estimate { mean, bar, .. }) => {
-                format!("{rate}{}", whole(with_bar(*mean, *bar)))
+                format!("{rate}{}", whole(with_error_bar(*mean, *bar)))
             }
             AverageOutcome::Constant { mean } => format!("{rate}always {}", significant(*mean, 6)),
             AverageOutcome::TooShort { enough_at, .. } => {

@@ -65,7 +65,7 @@ impl PlotVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         let run = run_folder(&self.run);
         let table = ObservableTable::read(&run.join("thermo.csv"), methods)?;
-        let wanted = table.wanted(&self.columns, methods)?;
+        let wanted = table.selected_columns(&self.columns, methods)?;
         let units = UnitSystem::of(scene_of(&run).as_ref());
         let mut figures = table.figures(&wanted, &units);
         figures.extend(structure::figures(&run, &units)?);
@@ -82,7 +82,7 @@ impl PlotVerb {
         });
         let (mut names, mut pictures, mut taken) = (vec![], vec![], BTreeSet::new());
         for figure in &figures {
-            let Some((vector, pixels)) = drawn(figure, common)? else { continue };
+            let Some((vector, pixels)) = draw_figure(figure, common)? else { continue };
             let name = file_name(&figure.name, &mut taken);
             names.extend(["svg", "png"].map(|kind| format!("{name}.{kind}")));
             pictures.extend([vector.into_bytes(), pixels]);
@@ -101,7 +101,7 @@ impl PlotVerb {
         if common.json {
             return print_json(&json!({ "files": written }));
         }
-        let mut small = table.small(&wanted, &out);
+        let mut small = table.terminal_table(&wanted, &out);
         if self.film {
             small = small.note(format!("film for a browser: {}", quoted::path(&out.join(FILM))));
         }
@@ -115,7 +115,7 @@ fn is_picture(name: &str) -> bool {
 }
 
 /// Draws a picture as SVG and PNG; warns and returns none if it cannot be drawn.
-fn drawn(figure: &Figure, common: &Common) -> Result<Option<(String, Vec<u8>)>, CommandFailure> {
+fn draw_figure(figure: &Figure, common: &Common) -> Result<Option<(String, Vec<u8>)>, CommandFailure> {
     match svg(figure).and_then(|vector| Ok((vector, png(figure)?))) {
         Ok(pictures) => Ok(Some(pictures)),
         Err(why) => {

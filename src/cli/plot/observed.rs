@@ -51,7 +51,7 @@ impl Reported for ObservableError {
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         match self {
             ObservableError::NoColumn { .. } => None,
             ObservableError::Table(error) => Some(error),
@@ -74,7 +74,7 @@ struct CurveGroup {
 
 impl CurveGroup {
     /// Returns true if one more curve fits, and every curve keeps a visible range.
-    fn has_room_for(&self, ends: [f64; 2]) -> bool {
+    fn can_take(&self, ends: [f64; 2]) -> bool {
         let all = || self.curves.iter().map(|(_, ends)| *ends).chain([ends]);
         let low = all().map(|[low, _]| low).fold(f64::INFINITY, f64::min);
         let high = all().map(|[_, high]| high).fold(f64::NEG_INFINITY, f64::max);
@@ -115,7 +115,7 @@ impl ObservableTable {
         self.columns.iter().position(|column| column == "time").unwrap_or_default()
     }
 
-    pub(super) fn wanted(
+    pub(super) fn selected_columns(
         &self,
         names: &[String],
         methods: Methods,
@@ -149,9 +149,9 @@ impl ObservableTable {
     pub(super) fn figures(&self, wanted: &[SelectedColumn], system: &UnitSystem) -> Vec<Figure> {
         let mut units: BTreeMap<&str, Vec<CurveGroup>> = BTreeMap::new();
         for it in wanted {
-            let ends = self.ends(it.column);
+            let ends = self.column_range(it.column);
             let groups = units.entry(it.unit).or_default();
-            match groups.iter_mut().find(|group| group.has_room_for(ends)) {
+            match groups.iter_mut().find(|group| group.can_take(ends)) {
                 Some(group) => group.curves.push((it.column, ends)),
                 None => groups.push(CurveGroup { curves: vec![(it.column, ends)] }),
             }
@@ -164,7 +164,7 @@ impl ObservableTable {
     }
 
     /// Range of a column, short peaks excluded.
-    fn ends(&self, column: usize) -> [f64; 2] {
+    fn column_range(&self, column: usize) -> [f64; 2] {
         let mut values: Vec<f64> = self.column(column).collect();
         values.sort_by(f64::total_cmp);
         [PEAKS, 1.0 - PEAKS].map(|part| quantile(&values, part).unwrap_or(0.0))
@@ -178,7 +178,7 @@ impl ObservableTable {
         let said: Vec<String> = columns
             .iter()
             .zip(&words)
-            .map(|(&column, name)| match self.mean_of(column) {
+            .map(|(&column, name)| match self.mean_description(column) {
                 Some(mean) => format!("{name}: {mean}"),
                 None => name.clone(),
             })
@@ -196,7 +196,7 @@ impl ObservableTable {
         .with(series);
         let columns: Vec<&str> = columns.iter().map(|&column| self.columns[column].as_str()).collect();
         let ribbons = self.means.iter().flat_map(|means| means.ribbons(&columns));
-        let before = self.means.iter().filter_map(|means| means.before(&columns));
+        let before = self.means.iter().filter_map(|means| means.transient_band(&columns));
         before
             .fold(chart.with(ribbons), Chart::band)
             .figure(names.join("-").replace('_', "-"), words.join(", "))
@@ -207,28 +207,30 @@ impl ObservableTable {
     }
 
     /// Short description of a column's mean.
-    fn mean_of(&self, column: usize) -> Option<String> {
-        self.means.as_ref()?.words(&self.columns[column])
+    fn mean_description(&self, column: usize) -> Option<String> {
+        self.means.as_ref()?.mean_text(&self.columns[column])
     }
 
     /// Table with a row for each column: first, last, mean and curve.
-    pub(super) fn small(&self, wanted: &[SelectedColumn], out: &Path) -> FormattedTable {
+    pub(super) fn terminal_table(&self, wanted: &[SelectedColumn], out: &Path) -> FormattedTable {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
         FrameBuilder::of(wanted)
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
             .text("last", |it| number(self.column(it.column).last()))
             .text("mean ± 95 %", |it| {
-                self.means.as_ref().map_or_else(String::new, |means| means.short(&self.columns[it.column]))
+                self.means
+                    .as_ref()
+                    .map_or_else(String::new, |means| means.brief_text(&self.columns[it.column]))
             })
-            .text("curve", |it| course(&self.column(it.column).collect::<Vec<_>>()))
+            .text("curve", |it| sparkline(&self.column(it.column).collect::<Vec<_>>()))
             .table("plot", "Observables over time")
             .note(format!("pictures: {}", quoted::path(out)))
     }
 }
 
 /// Curve of a few block characters, scaled from the smallest to the largest value.
-fn course(values: &[f64]) -> String {
+fn sparkline(values: &[f64]) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -248,9 +250,9 @@ mod tests {
 
     #[test]
     fn sparklines_span_smallest_to_largest() {
-        assert_eq!(course(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
-        assert_eq!(course(&[3.0]), "▁");
-        assert_eq!(course(&[1.0; 100]).chars().count(), SMALL);
+        assert_eq!(sparkline(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
+        assert_eq!(sparkline(&[3.0]), "▁");
+        assert_eq!(sparkline(&[1.0; 100]).chars().count(), SMALL);
     }
 
     #[test]
@@ -266,7 +268,7 @@ mod tests {
         let names: Vec<String> = figures.into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
         // Small numbers keep their significant digits in the terminal.
-        let small = observed.small(&wanted, Path::new("out"));
+        let small = observed.terminal_table(&wanted, Path::new("out"));
         assert_eq!(small.rows[3][2], TableCell::Text("1e-15".to_owned()));
     }
 }

@@ -37,7 +37,7 @@ const THICKNESS: [f64; 3] = [1.0, 0.5, 1.5];
 const NAMED: usize = 60;
 
 /// Radius of a point body (pixels). It shrinks with the number of bodies, so that a dense core is visible in a halo.
-pub(super) fn point(bodies: usize) -> f64 {
+pub(super) fn point_radius(bodies: usize) -> f64 {
     let shrunk = 2.5 * (1000.0 / bodies as f64).sqrt();
     if bodies <= TRACED { LARGE_POINT } else { shrunk.clamp(1.7, 2.5) }
 }
@@ -61,7 +61,7 @@ pub(super) fn pictures(run: &Path, colours: &RunColouring) -> Result<Vec<Figure>
     let (mut last, mut slices, mut tracks) = (None, vec![], vec![]);
     for frame in Trajectory::open(run)? {
         let frame: ParticleFrame = frame?;
-        slices.extend(slice(&frame).map(|counts| (frame.time, counts)));
+        slices.extend(slice_counts(&frame).map(|counts| (frame.time, counts)));
         if frame.particles.len() <= TRACED && window::is_endless(&frame) {
             tracks.push(frame.particles.all().iter().map(|particle| particle.position).collect::<Vec<_>>());
         }
@@ -81,8 +81,8 @@ pub(super) fn pictures(run: &Path, colours: &RunColouring) -> Result<Vec<Figure>
     let shades = Shades { values, ends, quantity, label, tells_apart };
     let stem = run.file_stem().unwrap_or_default().to_string_lossy();
     let name: String = stem.chars().take(NAMED).collect();
-    let states = views.iter().map(|&view| state(&name, &last, scene.as_ref(), &traces, &shades, view));
-    Ok(states.chain(density(&name, &last, scene.as_ref(), &slices)).collect())
+    let states = views.iter().map(|&view| state_figure(&name, &last, scene.as_ref(), &traces, &shades, view));
+    Ok(states.chain(density_figure(&name, &last, scene.as_ref(), &slices)).collect())
 }
 
 /// Shades of the particles.
@@ -117,12 +117,12 @@ impl ViewDirection {
 
 /// Gravity of a scene; none if it is zero.
 fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
-    let [x, y] = window::pair(scene, "gravity")?;
+    let [x, y] = window::domain_pair(scene, "gravity")?;
     ([x, y] != [0.0, 0.0]).then_some([x, y])
 }
 
 /// Picture of the particles of a frame.
-fn state(
+fn state_figure(
     name: &str,
     frame: &ParticleFrame,
     scene: Option<&toml::Table>,
@@ -136,7 +136,7 @@ fn state(
     let axes = view.axes();
     let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
     let bounds = window::bounds(frame, scene, traces, axes);
-    let [[x, x_end], [y, y_end]] = window::shown(frame, traces, axes, bounds);
+    let [[x, x_end], [y, y_end]] = window::visible_window(frame, traces, axes, bounds);
     let (width, height) = (x_end - x, y_end - y);
     // A tall box is drawn lying, its upper end to the left.
     let lies = height > LONG * width;
@@ -144,8 +144,8 @@ fn state(
     let window = if lies { [[0.0, 0.0], [height, width]] } else { [[x, y], [x_end, y_end]] };
     let pixels = if lies || width > LONG * height { WIDE } else { WIDTH };
     let pixel = (window[1][0] - window[0][0]) / pixels;
-    let is_point = window::is_of_points(frame, bounds);
-    let radius = |of: f64| if is_point { point(all.len()) * pixel } else { of.max(LEAST * pixel) };
+    let is_point = window::has_point_bodies(frame, bounds);
+    let radius = |of: f64| if is_point { point_radius(all.len()) * pixel } else { of.max(LEAST * pixel) };
     let (across, up) = (x..=x_end, y..=y_end);
     // Shapes outside the window would cover the labels around it.
     let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
@@ -226,7 +226,7 @@ fn state(
 }
 
 /// Numbers of grains in slices along a long box, from its lower or left end; none if no side is much longer than the other.
-fn slice(frame: &ParticleFrame) -> Option<Vec<f64>> {
+fn slice_counts(frame: &ParticleFrame) -> Option<Vec<f64>> {
     let [width, height] = frame.cell;
     let side = if width > LONG * height { 0 } else { 1 };
     if frame.cell[side] <= LONG * frame.cell[1 - side] {
@@ -237,14 +237,14 @@ fn slice(frame: &ParticleFrame) -> Option<Vec<f64>> {
     let bins = (frame.cell[side] / (BIN * 2.0 * sum / f64::from(count.max(1)))).floor().clamp(1.0, 400.0);
     let mut counts = vec![0.0; bins as usize];
     for disc in grains {
-        let part = (disc.place()[side] - frame.origin[side]) / frame.cell[side];
+        let part = (disc.planar_position()[side] - frame.origin[side]) / frame.cell[side];
         counts[((part * bins) as usize).min(bins as usize - 1)] += 1.0;
     }
     Some(counts)
 }
 
 /// Map of the density along a long box over time.
-fn density(
+fn density_figure(
     name: &str,
     last: &ParticleFrame,
     scene: Option<&toml::Table>,

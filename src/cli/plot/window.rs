@@ -26,12 +26,12 @@ pub(super) fn is_periodic(frame: &ParticleFrame, axis: usize) -> bool {
 }
 
 /// Returns true if the particles of a frame with these bounds are bodies, which have no size.
-pub(super) fn is_of_points(frame: &ParticleFrame, bounds: [[f64; 2]; 2]) -> bool {
+pub(super) fn has_point_bodies(frame: &ParticleFrame, bounds: [[f64; 2]; 2]) -> bool {
     is_endless(frame) && bounds.iter().all(|[low, high]| low.is_infinite() && high.is_infinite())
 }
 
 /// Pair of numbers from the scene's `domain`.
-pub(super) fn pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
+pub(super) fn domain_pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
     let pair = scene.get("domain")?.get(key)?.as_array()?;
     let number = |value: &toml::Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     Some([pair.first().and_then(number)?, pair.get(1).and_then(number)?])
@@ -53,8 +53,8 @@ pub(super) fn bounds(
             let is_open = !is_periodic(frame, axis) && places().any(|place| place[axis] > origin + side);
             return Some([origin, if is_open { f64::INFINITY } else { origin + side }]);
         }
-        let side = *pair(scene?, "sides")?.get(axis)?;
-        let origin = pair(scene?, "origin").map_or(0.0, |origin| origin[axis]);
+        let side = *domain_pair(scene?, "sides")?.get(axis)?;
+        let origin = domain_pair(scene?, "origin").map_or(0.0, |origin| origin[axis]);
         // An open box is open above.
         Some([origin, if axis == 1 { f64::INFINITY } else { origin + side }])
     };
@@ -62,7 +62,7 @@ pub(super) fn bounds(
 }
 
 /// Window along two axes (length): the whole box, or the part of it, or of space, with almost all particles.
-pub(super) fn shown(
+pub(super) fn visible_window(
     frame: &ParticleFrame,
     traces: &[[f64; 3]],
     axes: [usize; 2],
@@ -72,7 +72,8 @@ pub(super) fn shown(
     let grains = frame.particles.grains();
     let seen = if grains.is_empty() { all } else { grains };
     // Radii of bodies are only for viewers.
-    let sizes = seen.iter().map(|particle| if is_of_points(frame, bounds) { 0.0 } else { particle.radius });
+    let sizes =
+        seen.iter().map(|particle| if has_point_bodies(frame, bounds) { 0.0 } else { particle.radius });
     let largest = sizes.fold(0.0, f64::max);
     let occupied = [0, 1].map(|which| {
         let [low, high] = bounds[which];
@@ -138,7 +139,7 @@ mod tests {
 
     fn seen(places: &[[f64; 3]], cell: [f64; 2], axes: [usize; 2]) -> [[f64; 2]; 2] {
         let frame = frame(places, cell);
-        shown(&frame, &[], axes, bounds(&frame, None, &[], axes))
+        visible_window(&frame, &[], axes, bounds(&frame, None, &[], axes))
     }
 
     /// Square of n × n positions with side 10 and its corner at the origin.
@@ -210,7 +211,7 @@ mod tests {
         let scene: toml::Table = "[domain]\nsides = [10.0, 40.0]".parse().unwrap();
         let bounds = bounds(&frame, Some(&scene), &[], [0, 1]);
         assert_eq!(bounds, [[0.0, 10.0], [0.0, f64::INFINITY]]);
-        let [x, y] = shown(&frame, &[], [0, 1], bounds);
+        let [x, y] = visible_window(&frame, &[], [0, 1], bounds);
         assert_eq!((x, y[0]), ([0.0, 10.0], 0.0));
         assert!((10.0..13.0).contains(&y[1]), "{y:?}");
     }

@@ -2,7 +2,7 @@
 //!
 //! Every process takes part once: before its first message of joint work, otherwise at its end. So no process waits for one that has ended.
 
-use super::{broken, of_rank};
+use super::{process_failure, rank_failure};
 use crate::console::CommandFailure;
 use serde::{Deserialize, Serialize};
 use stripmine_physics::ranks::{RankError, Ranks};
@@ -20,7 +20,7 @@ pub(super) enum ProcessState {
 
 impl ProcessState {
     pub(super) fn refused(failure: &CommandFailure) -> ProcessState {
-        ProcessState::Refused { code: failure.exit_code(), words: failure.words() }
+        ProcessState::Refused { code: failure.exit_code(), words: failure.message_text() }
     }
 }
 
@@ -47,16 +47,16 @@ enum BroadcastVerdict {
 ///
 /// # Errors
 /// [`RankError`] if a rank is lost.
-pub(super) fn agreed(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdict, RankError> {
+pub(super) fn exchange_states(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdict, RankError> {
     let all = ranks.gather_messages(part)?;
-    let announced = ranks.tell_message((ranks.rank() == 0).then(|| verdict(&all)))?;
+    let announced = ranks.broadcast_message((ranks.rank() == 0).then(|| joint_verdict(&all)))?;
     Ok(match announced {
         BroadcastVerdict::Alike => JointVerdict::Own,
         BroadcastVerdict::Failed { rank, alone: true, .. } if ranks.rank() == rank => JointVerdict::Own,
         BroadcastVerdict::Failed { rank, code, words, .. } => {
-            JointVerdict::Failed(of_rank(rank, code, &words))
+            JointVerdict::Failed(rank_failure(rank, code, &words))
         }
-        BroadcastVerdict::Differs(rank) => JointVerdict::Failed(broken(
+        BroadcastVerdict::Differs(rank) => JointVerdict::Failed(process_failure(
             format!(
                 "rank {rank} differs from rank 0 in its scene, its arguments or its version of the program"
             ),
@@ -66,7 +66,7 @@ pub(super) fn agreed(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdi
 }
 
 /// Finds the first rank that fails, unless all fail for the same reason; otherwise the first that differs.
-fn verdict(all: &[ProcessState]) -> BroadcastVerdict {
+fn joint_verdict(all: &[ProcessState]) -> BroadcastVerdict {
     let Some(differs) = all.iter().position(|part| *part != all[0]) else { return BroadcastVerdict::Alike };
     let refused = all.iter().enumerate().find_map(|(rank, part)| match part {
         ProcessState::Refused { code, words } => Some((rank, *code, words.clone())),
@@ -97,7 +97,7 @@ mod tests {
                 Some(_) => ProcessState::refused(&failure),
                 None => ProcessState::Finished,
             };
-            match agreed(&ranks, part).unwrap() {
+            match exchange_states(&ranks, part).unwrap() {
                 JointVerdict::Own => None,
                 JointVerdict::Failed(failure) => Some((failure.exit_code(), failure.to_string())),
             }

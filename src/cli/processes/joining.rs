@@ -8,7 +8,7 @@ use std::time::Duration;
 pub(super) type TimedAction = Box<dyn FnOnce() + Send>;
 
 /// Runs `work`; while it runs, each action of `acts` is taken after its time, one after the other.
-pub(super) fn watched<T>(work: impl FnOnce() -> T, acts: Vec<(Duration, TimedAction)>) -> T {
+pub(super) fn with_timeouts<T>(work: impl FnOnce() -> T, acts: Vec<(Duration, TimedAction)>) -> T {
     let (working, ended) = channel::<()>();
     let watch = move || {
         for (time, act) in acts {
@@ -43,8 +43,8 @@ mod tests {
     fn long_work_triggers_actions() {
         let (sender, said) = channel();
         let acts = |time| ["notice", "end"].map(|what| (time, says(what, &sender))).into();
-        assert_eq!(watched(|| [(); 2].map(|()| said.recv().unwrap()), acts(MOMENT)), ["notice", "end"]);
-        assert_eq!(watched(|| 3, acts(FOR_EVER)), 3);
+        assert_eq!(with_timeouts(|| [(); 2].map(|()| said.recv().unwrap()), acts(MOMENT)), ["notice", "end"]);
+        assert_eq!(with_timeouts(|| 3, acts(FOR_EVER)), 3);
         drop(sender);
         assert_eq!(said.recv().ok(), None);
     }

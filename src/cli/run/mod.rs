@@ -5,12 +5,12 @@ mod seeds;
 use super::display::UnitSystem;
 use super::processes;
 use crate::console::{
-    CommandFailure, Common, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json, say,
-    warn,
+    CommandFailure, Common, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json,
+    print_message, warn,
 };
 use crate::provenance::built;
 use crate::study::StudyCase;
-use crate::study::explain::{PlanCache, tuned};
+use crate::study::explain::{PlanCache, tuned_settings};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stripmine_physics::method::{
@@ -20,7 +20,8 @@ use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::{self, RankBackend};
 use stripmine_physics::run::{
-    Ending, ExistingRun, RunJob, StructureSummary, Summary, begins, chosen_otherwise, forecast, run,
+    Ending, ExistingRun, RunJob, StructureSummary, Summary, choices_of_the_run, forecast, run,
+    starts_from_beginning,
 };
 use stripmine_physics::scene::SceneValues;
 use stripmine_physics::signals;
@@ -71,13 +72,13 @@ impl RunVerb {
         let folder = self.folder("run");
         let vocabularies = vocabularies(methods);
         // A resumed run keeps its choices.
-        let is_open = self.tuned && begins(&folder, self.existing())?;
-        let given = if is_open { self.tuned(common, methods)? } else { self.overrides.clone() };
+        let is_open = self.tuned && starts_from_beginning(&folder, self.existing())?;
+        let given = if is_open { self.tuned_overrides(common, methods)? } else { self.overrides.clone() };
         let text = SceneValues::text(&self.scene, &vocabularies)?;
         let values = SceneValues::parse(&self.scene, &text, &given, &vocabularies)?;
         let (mut prepared, entry) = prepare(values.clone(), methods)?;
         if self.resume {
-            let chosen = chosen_otherwise(&values, entry.vocabulary, &prepared.scene, &folder);
+            let chosen = choices_of_the_run(&values, entry.vocabulary, &prepared.scene, &folder);
             if !chosen.is_empty() {
                 let overrides = [given.as_slice(), &chosen].concat();
                 let values = SceneValues::parse(&self.scene, &text, &overrides, &vocabularies)?;
@@ -85,13 +86,13 @@ impl RunVerb {
             }
         }
         let crew = self.crew(common)?;
-        prepared.memory = prepared.memory.on(crew);
+        prepared.memory = prepared.memory.for_crew(crew);
         prepared.memory.fits(&self.scene)?;
         let RankBackend::Processes(join) = crew else {
             return self.carry_out((&prepared, entry), &folder, crew, common);
         };
         let first = || self.carry_out((&prepared, entry), &folder, crew, common);
-        processes::together(join, &format!("run\n{:?}\n{}", built(), prepared.scene), first, || {
+        processes::run_jointly(join, &format!("run\n{:?}\n{}", built(), prepared.scene), first, || {
             processes::serve(crew, || prepared.start(StartPurpose::Run).map(drop));
         })
     }
@@ -99,10 +100,10 @@ impl RunVerb {
     /// Crew that executes the run.
     fn crew(&self, common: &Common) -> Result<RankBackend, CommandFailure> {
         match (common.crew, self.ranks) {
-            (RankBackend::Processes(_), 2..) => Err(processes::ranks_twice()),
+            (RankBackend::Processes(_), 2..) => Err(processes::duplicate_ranks_failure()),
             (crew @ RankBackend::Processes(_), _) => Ok(crew),
             (_, ranks) => {
-                threads_of_ranks(ranks, rayon::current_num_threads())?;
+                check_total_threads(ranks, rayon::current_num_threads())?;
                 Ok(RankBackend::Threads(ranks.into()))
             }
         }
@@ -117,9 +118,9 @@ impl RunVerb {
         common: &Common,
     ) -> Result<(), CommandFailure> {
         let existing = self.existing();
-        let begins = begins(folder, existing)?;
+        let begins = starts_from_beginning(folder, existing)?;
         if !common.quiet {
-            before(prepared, begins);
+            print_expectations(prepared, begins);
         }
         let bar = bar(common, 0, STEPS);
         let progress = |done, all| {
@@ -132,8 +133,8 @@ impl RunVerb {
             }
         };
         let job = RunJob { prepared, quantities: entry.quantities, program: &built() };
-        let work = || run(job, folder, existing, signals::asked(), progress, notice);
-        let ending = ranks::over(crew, work);
+        let work = || run(job, folder, existing, signals::interruption_flag(), progress, notice);
+        let ending = ranks::with_backend(crew, work);
         clear_progress();
         match ending? {
             Ending::Done(summary) if common.json => print_json(&summary),
@@ -141,7 +142,7 @@ impl RunVerb {
                 if !common.quiet {
                     summary.warnings.iter().for_each(warn);
                 }
-                print(&text(&summary, folder, &prepared.scene))
+                print(&summary_text(&summary, folder, &prepared.scene))
             }
             Ending::Interrupted { clock } => {
                 Err(CommandFailure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
@@ -154,7 +155,7 @@ impl RunVerb {
 ///
 /// # Errors
 /// [`Failure::ManyThreads`]
-pub(super) fn threads_of_ranks(ranks: u16, threads: usize) -> Result<(), CommandFailure> {
+pub(super) fn check_total_threads(ranks: u16, threads: usize) -> Result<(), CommandFailure> {
     match usize::from(ranks) * threads > MOST_THREADS.into() {
         true if ranks > 1 => Err(CommandFailure::ManyThreads { ranks, threads }),
         _ => Ok(()),
@@ -163,17 +164,19 @@ pub(super) fn threads_of_ranks(ranks: u16, threads: usize) -> Result<(), Command
 
 impl RunVerb {
     /// Overrides, with the values that cached measurements choose for `auto`.
-    fn tuned(&self, common: &Common, methods: Methods) -> Result<Vec<String>, CommandFailure> {
+    fn tuned_overrides(&self, common: &Common, methods: Methods) -> Result<Vec<String>, CommandFailure> {
         let case = StudyCase::load(&self.scene, &self.overrides, methods)?;
-        let found = tuned(&case, &PlanCache::here());
+        let found = tuned_settings(&case, &PlanCache::here());
         if !common.quiet {
             match &found {
                 Err(error) => warn(format_args!("--tuned changes nothing: {error}")),
                 Ok(found) => match found {
-                    Some(found) => {
-                        say(format_args!("tuned: {}: {}", found.overrides.texts().join(", "), found.origin))
-                    }
-                    None => say(format_args!(
+                    Some(found) => print_message(format_args!(
+                        "tuned: {}: {}",
+                        found.overrides.texts().join(", "),
+                        found.origin
+                    )),
+                    None => print_message(format_args!(
                         "tuned: nothing to change: no key is `auto`, or no similar scene was measured (stripmine explain {} measures)",
                         self.scene
                     )),
@@ -203,16 +206,16 @@ impl RunVerb {
 }
 
 /// Prints what to expect of the run; the time and the start only if it is not resumed.
-fn before(prepared: &Prepared, begins: bool) {
-    let of_the_time = begins.then(|| forecast::of_the_time(prepared)).flatten();
-    let of_this_host = of_the_time.into_iter().chain([forecast::of_the_memory(prepared)]);
+fn print_expectations(prepared: &Prepared, begins: bool) {
+    let of_the_time = begins.then(|| forecast::time_forecast(prepared)).flatten();
+    let of_this_host = of_the_time.into_iter().chain([forecast::memory_forecast(prepared)]);
     forecast::above_limits(prepared).iter().for_each(warn);
-    let of_the_start = forecast::of_the_start(prepared).filter(|_| begins);
-    let facts = of_the_start.into_iter().chain(forecast::of_the_step(prepared)).chain(of_this_host);
+    let of_the_start = forecast::start_forecast(prepared).filter(|_| begins);
+    let facts = of_the_start.into_iter().chain(forecast::step_forecast(prepared)).chain(of_this_host);
     let limits = &prepared.step_limits;
     let is_shown = |name: &str| is_lowest(limits, name) || limits.iter().all(|limit| limit.name != name);
     for (label, words) in facts.filter_map(|fact| fact.words).filter(|(label, _)| is_shown(label)) {
-        say(format_args!("expected: {label}: {words}"));
+        print_message(format_args!("expected: {label}: {words}"));
     }
 }
 
@@ -223,7 +226,7 @@ fn is_lowest(limits: &[StepLimit], name: &str) -> bool {
     limits.iter().any(|limit| limit.name == name && !is_higher(limit))
 }
 
-fn text(summary: &Summary, folder: &Path, scene: &str) -> String {
+fn summary_text(summary: &Summary, folder: &Path, scene: &str) -> String {
     let &Summary { steps, events, time, seconds, from, .. } = summary;
     let done = Clock { steps, time, events }.done();
     let session = if from == Clock::default() { String::new() } else { format!(" (resumed at {from})") };

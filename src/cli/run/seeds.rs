@@ -4,7 +4,7 @@ use super::RunVerb;
 use crate::cli::display::UnitSystem;
 use crate::cli::processes;
 use crate::console::{
-    CommandFailure, Common, SHARES, bar, clear_progress, print, print_json, say, to_json, warn,
+    CommandFailure, Common, SHARES, bar, clear_progress, print, print_json, print_message, to_json, warn,
 };
 use crate::provenance::built;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -24,7 +24,8 @@ use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::RankBackend;
 use stripmine_physics::run::{
-    Ending, FinishedRun, RunJob, StructureFunction, Summary, averages_of, begins, functions_of, run,
+    Ending, FinishedRun, RunJob, StructureFunction, Summary, averages_of, functions_of, run,
+    starts_from_beginning,
 };
 use stripmine_physics::scene::{Fallback, Key, KeyValue, MistakeKind, SceneValues, Vocabulary};
 use stripmine_physics::signals;
@@ -74,7 +75,7 @@ struct SeedRun {
 
 /// Seed keys of a scene, each with its first value: seeds of the start, and of the noise if it is given or is the only
 /// random input.
-fn seeds_of(values: &SceneValues, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)> {
+fn seed_keys(values: &SceneValues, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)> {
     let is_seed = |key: &&'static Key| key.name == "seed" || key.name.ends_with("_seed");
     let seed = |key: &&'static Key| match values.value(key) {
         Some(KeyValue::Whole(seed)) => Some((*key, seed)),
@@ -105,7 +106,7 @@ impl RunVerb {
         let text = SceneValues::text(&self.scene, &vocabularies(methods))?;
         let values = self.values(&text, &[], methods)?.sharing_start();
         let method = methods.iter().find(|method| method.vocabulary.keys.method == values.method());
-        let keys = method.map_or(vec![], |method| seeds_of(&values, method.vocabulary));
+        let keys = method.map_or(vec![], |method| seed_keys(&values, method.vocabulary));
         if keys.is_empty() {
             let error = values.spot(&stripmine_physics::scene::METHOD);
             let message = "this scene has no random numbers: every seed gives the same run";
@@ -137,13 +138,15 @@ impl RunVerb {
         };
         // If a run is refused, nothing is changed.
         if processes::rank(common.crew) == 0 {
-            members.iter().try_for_each(|(folder, _)| begins(folder, self.existing()).map(drop))?;
+            members
+                .iter()
+                .try_for_each(|(folder, _)| starts_from_beginning(folder, self.existing()).map(drop))?;
         }
         let side_by_side = |some: &[SeededRun]| self.side_by_side(some, &prepared, common, &with_seeds);
         let (own, averages) = if let RankBackend::Processes(join) = common.crew {
             let same = format!("{count} seeds\n{:?}\n{}", built(), prepared.scene);
             let mut own = None;
-            processes::apart(join, &same, |rank, ranks| {
+            processes::run_independently(join, &same, |rank, ranks| {
                 if rank == 0 {
                     own = Some(claimed()?);
                 }
@@ -225,10 +228,10 @@ impl RunVerb {
                 let notice = |note: &str| {
                     let mut all = notices.lock().unwrap_or_else(PoisonError::into_inner);
                     if all.insert(note.to_owned()) && !common.quiet {
-                        say(format_args!("{}: {note}", quoted::path(folder)));
+                        print_message(format_args!("{}: {note}", quoted::path(folder)));
                     }
                 };
-                let outcome = pool.install(|| self.one(folder, with_seeds(seeds), progress, notice));
+                let outcome = pool.install(|| self.run_one_seed(folder, with_seeds(seeds), progress, notice));
                 outcomes.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(outcome);
             }
         };
@@ -244,7 +247,7 @@ impl RunVerb {
         outcomes.into_iter().flatten().collect()
     }
 
-    fn one(
+    fn run_one_seed(
         &self,
         folder: &Path,
         scene: Result<(Prepared, &'static MethodEntry), CommandFailure>,
@@ -253,7 +256,7 @@ impl RunVerb {
     ) -> Result<Summary, CommandFailure> {
         let (prepared, entry) = scene?;
         let job = RunJob { prepared: &prepared, quantities: entry.quantities, program: &built() };
-        match run(job, folder, self.existing(), signals::asked(), progress, notice)? {
+        match run(job, folder, self.existing(), signals::interruption_flag(), progress, notice)? {
             Ending::Done(summary) => {
                 for warning in &summary.warnings {
                     warn(format_args!("{}: {warning}", quoted::path(folder)));

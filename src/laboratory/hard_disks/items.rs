@@ -7,14 +7,14 @@ use crate::results::Item;
 
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
-    Item::of("hard-disks-fluid", fluid::made),
-    Item::of("hard-disks-structure", structure::made),
-    Item::of("hard-disks-rates", rates::made),
-    Item::of("hard-disks-masks", masks::made),
-    Item::of("hard-disks-complexity", complexity::made),
-    Item::of("hard-disks-cooling", cooling::made),
-    Item::of("hard-disks-collapse", collapse::made),
-    Item::of("hard-disks-precision", precision::made),
-    Item::of("hard-disks-atmosphere", atmosphere::made),
-    Item::of("soft-hard", soft_hard::made),
+    Item::of("hard-disks-fluid", fluid::reproduce),
+    Item::of("hard-disks-structure", structure::reproduce),
+    Item::of("hard-disks-rates", rates::reproduce),
+    Item::of("hard-disks-masks", masks::reproduce),
+    Item::of("hard-disks-complexity", complexity::reproduce),
+    Item::of("hard-disks-cooling", cooling::reproduce),
+    Item::of("hard-disks-collapse", collapse::reproduce),
+    Item::of("hard-disks-precision", precision::reproduce),
+    Item::of("hard-disks-atmosphere", atmosphere::reproduce),
+    Item::of("soft-hard", soft_hard::reproduce),
 ];

@@ -1,9 +1,9 @@
 //! Studies of hard discs as verbs below `chart`.
 
-use super::study::soft_hard::{SoftHardComparison, soft_hard};
+use super::study::soft_hard::{SoftHardComparison, compare_soft_hard};
 use crate::console::Verb;
 use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress};
-use crate::laboratory::written;
+use crate::laboratory::write_result;
 use crate::results::Folder;
 use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
@@ -25,10 +25,10 @@ struct SoftHardVerb {
     #[arg(long, default_value_t = 500, value_parser = clap::value_parser!(u64).range(50..=100_000))]
     particles: u64,
     /// Area of the discs over that of the box
-    #[arg(long, default_value_t = 0.5, value_parser = between::<1, 80>, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.5, value_parser = bounded_number::<1, 80>, allow_negative_numbers = true)]
     packing_fraction: f64,
     /// Restitution of the gas that cools
-    #[arg(long, default_value_t = 0.9, value_parser = between::<10, 100>, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.9, value_parser = bounded_number::<10, 100>, allow_negative_numbers = true)]
     restitution: f64,
     /// Folder for data, tables and figures
     #[arg(long, default_value = "charts")]
@@ -36,7 +36,7 @@ struct SoftHardVerb {
 }
 
 /// Parses a number between two bounds, given in hundredths.
-fn between<const LOW: u32, const HIGH: u32>(text: &str) -> Result<f64, String> {
+fn bounded_number<const LOW: u32, const HIGH: u32>(text: &str) -> Result<f64, String> {
     let [low, high] = [LOW, HIGH].map(|hundredths| f64::from(hundredths) / 100.0);
     match text.parse() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
@@ -55,9 +55,9 @@ impl SoftHardVerb {
             ..SoftHardComparison::REPORT
         };
         let (bar, start) = (progress(common, "chart"), Instant::now());
-        let made = soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;
+        let made = compare_soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;
         clear_progress();
-        let words = written(&folder, ("soft-hard", &made), start, common)?;
+        let words = write_result(&folder, ("soft-hard", &made), start, common)?;
         if common.json { print_json(&made.json()) } else { print(&(words + "\n")) }
     }
 }

@@ -25,7 +25,7 @@ pub(crate) struct StudyWork {
 ///
 /// # Errors
 /// [`StudyError::Parameters`] if they are not of the type `T`.
-pub(crate) fn given<T: DeserializeOwned>(parameters: &serde_json::Value) -> Result<T, StudyError> {
+pub(crate) fn parse_parameters<T: DeserializeOwned>(parameters: &serde_json::Value) -> Result<T, StudyError> {
     T::deserialize(parameters).map_err(StudyError::Parameters)
 }
 
@@ -108,7 +108,8 @@ impl RateCase {
 
     /// Name in messages.
     pub(super) fn name(&self) -> String {
-        let label = |(heading, value): &(String, TableCell)| format!("{heading} = {}", value.for_reading());
+        let label =
+            |(heading, value): &(String, TableCell)| format!("{heading} = {}", value.formatted_text());
         self.labels.iter().map(label).collect::<Vec<_>>().join(", ")
     }
 
@@ -126,29 +127,29 @@ impl RateCase {
                 let (prepared, method) = load(preset, overrides, METHODS)?;
                 let mut running = RunningScene::of(method, &prepared, StartPurpose::Measurement)?;
                 let mut advance = |running: &mut RunningScene, amount: u64| match in_events {
-                    true => running.events(amount),
-                    false => running.steps(amount),
+                    true => running.advance_events(amount),
+                    false => running.advance_steps(amount),
                 };
-                let clock = if self.threads.is_some() { wall } else { processor };
-                timed(&mut running, *amount, *seconds, &mut advance, clock)
+                let clock = if self.threads.is_some() { wall_clock } else { processor_clock };
+                time_scene(&mut running, *amount, *seconds, &mut advance, clock)
             }),
         };
         Ok(measured?)
     }
 }
 
-fn wall() -> Box<dyn Fn() -> f64> {
+fn wall_clock() -> Box<dyn Fn() -> f64> {
     let begun = Instant::now();
     Box::new(move || begun.elapsed().as_secs_f64())
 }
 
-fn processor() -> Box<dyn Fn() -> f64> {
+fn processor_clock() -> Box<dyn Fn() -> f64> {
     let begun = cpu_time::ProcessTime::now();
     Box::new(move || begun.elapsed().as_secs_f64())
 }
 
 /// Times a running scene over at least `least` steps or events and at least `seconds`.
-fn timed(
+fn time_scene(
     running: &mut RunningScene,
     [warm_up, least]: [u64; 2],
     seconds: f64,
@@ -203,9 +204,9 @@ mod tests {
         thread_local!(static NOW: std::cell::Cell<f64> = const { std::cell::Cell::new(0.0) });
         let clock: fn() -> Box<dyn Fn() -> f64> = || Box::new(|| NOW.get());
         let discs = Overrides::new().set(&COUNT, 16_u64);
-        let mut running = RunningScene::timed("hard-disks", &discs).unwrap();
+        let mut running = RunningScene::begin_timed("hard-disks", &discs).unwrap();
         let mut amounts = vec![];
-        let found = timed(
+        let found = time_scene(
             &mut running,
             [7, 10],
             30.0,
@@ -214,7 +215,7 @@ mod tests {
                     NOW.set(NOW.get() + amount as f64);
                 }
                 amounts.push(amount);
-                running.events(amount)
+                running.advance_events(amount)
             },
             clock,
         );

@@ -23,11 +23,11 @@ pub(super) fn measure(
 ) -> Result<(), ProcessFailure> {
     let mut command = Command::new(program);
     command.args([VERB, "--quiet"]);
-    answered(&mut command, cases, heard)
+    run_child(&mut command, cases, heard)
 }
 
 /// Runs a command and receives its readings of some cases.
-fn answered(
+fn run_child(
     command: &mut Command,
     cases: &[&RateCase],
     heard: &mut dyn FnMut(CaseReading),
@@ -65,12 +65,12 @@ fn answered(
     let words = words.join().unwrap_or_else(|_| String::new());
     match status.success() && readings == cases.len() {
         true => Ok(()),
-        false => Err(failure(status, &words)),
+        false => Err(failure_of_child(status, &words)),
     }
 }
 
 /// Failure of a process, from its exit status and message.
-fn failure(status: ExitStatus, words: &str) -> ProcessFailure {
+fn failure_of_child(status: ExitStatus, words: &str) -> ProcessFailure {
     let code = status.code().and_then(|code| u8::try_from(code).ok());
     let class = match code {
         Some(INTERRUPTED) => None,
@@ -119,7 +119,7 @@ mod tests {
     fn shell(script: &str) -> (Result<(), ProcessFailure>, Vec<f64>) {
         let case = RateCase::steps("bench", &Overrides::new(), 0, 1);
         let (mut command, mut heard) = (Command::new("sh"), vec![]);
-        let outcome = answered(command.args(["-c", script]), &[&case; 2], &mut |it| heard.push(it.work));
+        let outcome = run_child(command.args(["-c", script]), &[&case; 2], &mut |it| heard.push(it.work));
         (outcome, heard)
     }
 

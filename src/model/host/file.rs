@@ -8,8 +8,12 @@ use stripmine_physics::input::InputErrors;
 
 /// Format version that this program reads.
 pub(crate) const FORMAT: u32 = 15;
-const KIND: FileKind<HostModel> =
-    FileKind { format: FORMAT, remedy: Some("calibrate again"), wrong, completed: HostModel::checked };
+const KIND: FileKind<HostModel> = FileKind {
+    format: FORMAT,
+    remedy: Some("calibrate again"),
+    wrong: host_entry_error,
+    completed: HostModel::checked,
+};
 /// Upper bound of the numbers of a host file: with larger ones the sum over a step might not be finite.
 const MOST: f64 = 1e15;
 
@@ -36,7 +40,7 @@ impl HostModel {
     /// Fails where TOML cannot represent an entry.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         let mut value = toml::Value::try_from(self)?;
-        readable(&mut value);
+        round_numbers(&mut value);
         Ok(HEADING.to_owned() + &toml::to_string(&value)?)
     }
 
@@ -66,7 +70,7 @@ impl HostModel {
 }
 
 /// Describes the error of a number, if any.
-fn wrong(entry: &FileEntry<'_>) -> Option<String> {
+fn host_entry_error(entry: &FileEntry<'_>) -> Option<String> {
     let number = entry.number()?;
     let (range, words) = match entry.names.last() {
         // Numbers of lanes and of elements.
@@ -93,15 +97,15 @@ const HEADING: &str = "\
 const DIGITS: i32 = 4;
 
 /// Rounds numbers to the digits that a person reads.
-fn readable(value: &mut toml::Value) {
+fn round_numbers(value: &mut toml::Value) {
     match value {
         toml::Value::Float(number) if number.is_finite() && *number != 0.0 => {
             let places = DIGITS - 1 - number.abs().log10().floor() as i32;
             let text = format!("{number:.*}", places.clamp(0, 12) as usize);
             *number = text.parse().unwrap_or(*number);
         }
-        toml::Value::Array(items) => items.iter_mut().for_each(readable),
-        toml::Value::Table(table) => table.iter_mut().for_each(|(_, value)| readable(value)),
+        toml::Value::Array(items) => items.iter_mut().for_each(round_numbers),
+        toml::Value::Table(table) => table.iter_mut().for_each(|(_, value)| round_numbers(value)),
         _ => {}
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
-use stripmine_physics::number::{counted, significant};
+use stripmine_physics::number::{count_with_noun, significant};
 
 /// Conditions of a measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ impl MeasurementConditions {
         // One core is free for the measurement, or half of the only one.
         let bearable = (cores as f64 - 1.0).max(0.5);
         let busy = load.filter(|load| *load > bearable).map(|load| {
-            let cores = counted(cores, "core", "cores");
+            let cores = count_with_noun(cores, "core", "cores");
             format!("busy: the load average was {} on {cores} when it began", significant(load, 3))
         });
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
@@ -109,7 +109,7 @@ impl HostModel {
     ///
     /// # Errors
     /// [`OutOfRange::Length`] if they are not.
-    pub(crate) fn admits(&self, n: usize) -> Result<(), OutOfRange> {
+    pub(crate) fn check_length(&self, n: usize) -> Result<(), OutOfRange> {
         let MeasurementConditions { shortest, longest, .. } = self.measured;
         if n < shortest || n > longest {
             return Err(OutOfRange::Length { n, shortest, longest });
@@ -148,7 +148,7 @@ impl HostModel {
         if n == 0 {
             return Ok(0.0);
         }
-        self.admits(n)?;
+        self.check_length(n)?;
         let unmeasured = || OutOfRange::NotMeasured(format!("precision {}", outlines.lane));
         let of = self.programs.get(outlines.lane).ok_or_else(unmeasured)?;
         let costs = if execution == Execution::Chained { &of.chained } else { &of.interpreted };

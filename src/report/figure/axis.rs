@@ -1,10 +1,10 @@
 //! Axes: ends, positions of numbers, and tick marks.
 
-use super::check::no_interval;
+use super::check::interval_error;
 use super::writer::escaped;
 use super::{ChartAxis, Scale};
 use libm::{log10, pow};
-use stripmine_physics::number::ten_to;
+use stripmine_physics::number::power_of_ten;
 
 /// Share of an axis left free at each end when its ends are fitted to the data.
 const FREE: f64 = 0.04;
@@ -38,7 +38,7 @@ impl AxisRange {
         let ends = match (&axis.scale, axis.limits) {
             (Scale::Names(names), _) => [-0.5, names.len() as f64 - 0.5],
             (_, Some(limits)) => limits,
-            _ => fitting(axis, values)?,
+            _ => fitted_ends(axis, values)?,
         };
         Ok(AxisRange { heading: axis.heading(), scale: axis.scale.clone(), ends })
     }
@@ -53,7 +53,7 @@ impl AxisRange {
     }
 
     /// Returns the position of a value as a fraction of the axis. Non-positive values are infinitely far below a logarithmic axis.
-    pub(super) fn part(&self, value: f64) -> f64 {
+    pub(super) fn fraction_of(&self, value: f64) -> f64 {
         let [low, high] = self.even_ends();
         ((if self.is_logarithmic() { log10(value.max(0.0)) } else { value }) - low) / (high - low)
     }
@@ -77,16 +77,19 @@ impl AxisRange {
     }
 
     /// Returns the marks of the axis with as many labels as fit. `room` returns the length that a label needs.
-    pub(crate) fn marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<TickMark> {
+    pub(crate) fn tick_marks(&self, length: f64, room: impl Fn(&str) -> f64) -> Vec<TickMark> {
         if let Scale::Names(names) = &self.scale {
-            return (0..).zip(names).map(|(i, name)| (self.part(f64::from(i)), name.clone())).collect();
+            return (0..)
+                .zip(names)
+                .map(|(i, name)| (self.fraction_of(f64::from(i)), name.clone()))
+                .collect();
         }
         let decades = log10(self.ends[1]) - log10(self.ends[0]);
         let strides = STRIDES
             .iter()
             .filter(|_| self.is_logarithmic() && decades > FEWEST_DECADES)
-            .map(|&stride| self.of_decades(stride));
-        let steps = PARTS.iter().map(|&parts| self.of_steps(parts));
+            .map(|&stride| self.decade_marks(stride));
+        let steps = PARTS.iter().map(|&parts| self.step_marks(parts));
         let fits = |marks: &Vec<TickMark>| {
             let labelled: Vec<_> = marks.iter().filter(|mark| !mark.1.is_empty()).collect();
             let apart = |a: &TickMark, b: &TickMark| (b.0 - a.0) * length >= 0.5 * (room(&a.1) + room(&b.1));
@@ -100,7 +103,7 @@ impl AxisRange {
     }
 
     /// Marks at 1 to 9 times powers of ten. Numbers are written in full only if all of them are short.
-    fn of_decades(&self, stride: i32) -> Vec<TickMark> {
+    fn decade_marks(&self, stride: i32) -> Vec<TickMark> {
         let [low, high] = self.ends.map(exponent);
         let mut marks = vec![];
         for raised in low..=high {
@@ -114,17 +117,17 @@ impl AxisRange {
                 let label = match factor {
                     _ if !is_labelled => String::new(),
                     _ if low >= -3 && high <= 4 => plain(value),
-                    1 => ten_to(raised),
-                    _ => format!("{factor}×{}", ten_to(raised)),
+                    1 => power_of_ten(raised),
+                    _ => format!("{factor}×{}", power_of_ten(raised)),
                 };
-                marks.push((self.part(value), label));
+                marks.push((self.fraction_of(value), label));
             }
         }
         marks
     }
 
     /// Marks at multiples of a power of ten over `parts`, with small marks in between.
-    fn of_steps(&self, parts: f64) -> Vec<TickMark> {
+    fn step_marks(&self, parts: f64) -> Vec<TickMark> {
         let unit = pow(10.0, log10(self.ends[1] - self.ends[0]).floor()) / parts;
         let small = if [5.0, 0.5].contains(&parts) { 4.0 } else { 5.0 };
         let [first, last] = self.ends.map(|end| end / unit * small);
@@ -133,32 +136,32 @@ impl AxisRange {
         let all = (first - 1e-9).ceil() as i64..=(last + 1e-9).floor() as i64;
         let mark = |i: f64| {
             let value = i * unit / small;
-            (self.part(value), if i % small == 0.0 { self.even_label(value) } else { String::new() })
+            (self.fraction_of(value), if i % small == 0.0 { self.number_label(value) } else { String::new() })
         };
         all.take(most).map(|i| mark(i as f64)).collect()
     }
 
     /// Label of a number: written in full if short, otherwise with a common power of ten.
-    fn even_label(&self, number: f64) -> String {
+    fn number_label(&self, number: f64) -> String {
         let largest = self.ends[0].abs().max(self.ends[1].abs());
         let common = if (1e-3..1e6).contains(&largest) { 0 } else { exponent(largest) };
         match common {
             0 => plain(number),
             _ if number == 0.0 => "0".to_owned(),
-            _ => format!("{}×{}", plain(number / pow(10.0, f64::from(common))), ten_to(common)),
+            _ => format!("{}×{}", plain(number / pow(10.0, f64::from(common))), power_of_ten(common)),
         }
     }
 }
 
 /// Returns the range of the data with a margin.
-fn fitting(axis: &ChartAxis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], String> {
+fn fitted_ends(axis: &ChartAxis, values: impl Iterator<Item = f64>) -> Result<[f64; 2], String> {
     let is_logarithmic = axis.scale == Scale::Logarithmic;
     let [low, high] = values
         .map(|value| if is_logarithmic { log10(value) } else { value })
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
     let length = high - low;
     if !length.is_finite() {
-        return Err(no_interval(&format!("the axis `{}`", axis.label), [low, high]));
+        return Err(interval_error(&format!("the axis `{}`", axis.label), [low, high]));
     }
     let free = match is_logarithmic {
         // The range is resolved in floating point.
@@ -174,7 +177,7 @@ fn fitting(axis: &ChartAxis, values: impl Iterator<Item = f64>) -> Result<[f64; 
         [below, above] => [if low > 0.0 { below.max(0.0) } else { below }, above],
     };
     if !(ends[1] - ends[0]).is_finite() {
-        return Err(no_interval(&format!("the axis `{}`", axis.label), ends));
+        return Err(interval_error(&format!("the axis `{}`", axis.label), ends));
     }
     Ok(ends)
 }
@@ -201,21 +204,21 @@ mod tests {
     /// Labels of an axis with space for about six.
     fn labels(scale: Scale, limits: [f64; 2]) -> Vec<String> {
         let span = AxisRange::new(&axis(scale, Some(limits)), std::iter::empty()).unwrap();
-        let marks = span.marks(6.0, |_| 1.0);
+        let marks = span.tick_marks(6.0, |_| 1.0);
         assert!(marks.iter().all(|mark| (-1e-9..=1.0 + 1e-9).contains(&mark.0)));
         marks.into_iter().map(|mark| mark.1).filter(|label| !label.is_empty()).collect()
     }
 
     #[test]
     fn fitted_ends_have_a_margin() {
-        let of = |scale, values: &[f64]| fitting(&axis(scale, None), values.iter().copied()).unwrap();
+        let of = |scale, values: &[f64]| fitted_ends(&axis(scale, None), values.iter().copied()).unwrap();
         assert_eq!(of(Scale::Linear, &[0.0, 100.0]), [-4.0, 104.0]);
         assert_eq!(of(Scale::Linear, &[1.0, 101.0]), [0.0, 105.0]);
         assert_eq!(of(Scale::Linear, &[0.0]), [-1.0, 1.0]);
         assert_eq!(of(Scale::Linear, &[-20.0, -20.0]), [-22.0, -18.0]);
         let [low, high] = of(Scale::Logarithmic, &[1e-14, 1.0]).map(f64::log10);
         assert!((low + 14.56).abs() < 1e-9 && (high - 0.56).abs() < 1e-9);
-        assert!(fitting(&axis(Scale::Linear, None), [-1e308, 1e308].into_iter()).is_err());
+        assert!(fitted_ends(&axis(Scale::Linear, None), [-1e308, 1e308].into_iter()).is_err());
     }
 
     #[test]
@@ -228,7 +231,7 @@ mod tests {
         let logarithmic = |limits| labels(Scale::Logarithmic, limits);
         let short =
             AxisRange::new(&axis(Scale::Logarithmic, Some([22.0, 380.0])), std::iter::empty()).unwrap();
-        let short = short.marks(3.0, |_| 1.0).into_iter().map(|mark| mark.1);
+        let short = short.tick_marks(3.0, |_| 1.0).into_iter().map(|mark| mark.1);
         assert_eq!(short.filter(|label| !label.is_empty()).collect::<Vec<_>>(), ["30", "100", "300"]);
         assert_eq!(logarithmic([0.01, 1e3]), ["0.01", "0.1", "1", "10", "100", "1000"]);
         assert_eq!(logarithmic([1e-5, 1.0]), ["10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "1"]);
@@ -251,7 +254,7 @@ mod tests {
         let of = |scale, data: [f64; 2]| AxisRange::new(&axis(scale, None), data.into_iter());
         let wide = of(Scale::Logarithmic, [1e-305, 1e305]).unwrap();
         assert!(wide.ends[0] > 0.0 && wide.ends[1].is_finite(), "{wide:?}");
-        assert!(!wide.marks(10.0, |_| 1.0).is_empty());
+        assert!(!wide.tick_marks(10.0, |_| 1.0).is_empty());
         assert!(of(Scale::Linear, [-8.9e307, 8.9e307]).is_err());
     }
 
@@ -263,9 +266,9 @@ mod tests {
     #[test]
     fn there_are_small_marks_between_numbers() {
         let span = AxisRange::new(&axis(Scale::Linear, Some([0.0, 1.0])), std::iter::empty()).unwrap();
-        assert_eq!(span.marks(6.0, |_| 1.0).len(), 21);
+        assert_eq!(span.tick_marks(6.0, |_| 1.0).len(), 21);
         let span =
             AxisRange::new(&axis(Scale::Logarithmic, Some([1.0, 1000.0])), std::iter::empty()).unwrap();
-        assert_eq!(span.marks(3.0, |_| 1.0).len(), 28);
+        assert_eq!(span.tick_marks(3.0, |_| 1.0).len(), 28);
     }
 }

@@ -50,24 +50,24 @@ fn check_chart(chart: &Chart) -> Result<(), String> {
     for series in series {
         let place = |i: usize, what: &str| format!("{what} of point {i} of `{}`", series.name);
         for (i, point) in series.points.iter().enumerate() {
-            showable(x, point.x, || place(i, "x"))?;
-            showable(y, point.y, || place(i, "y"))?;
+            check_value(x, point.x, || place(i, "x"))?;
+            check_value(y, point.y, || place(i, "y"))?;
             point
                 .spread
                 .iter()
                 .flatten()
-                .try_for_each(|end| showable(spreads, *end, || place(i, "the spread")))?;
+                .try_for_each(|end| check_value(spreads, *end, || place(i, "the spread")))?;
         }
     }
     if let Some(band) = bands.iter().find(|band| !matches!(band.ends, [low, high] if low <= high)) {
-        return Err(no_interval(&format!("the band `{}`", band.label), band.ends));
+        return Err(interval_error(&format!("the band `{}`", band.label), band.ends));
     }
-    has(series.iter().any(|series| !series.points.is_empty()))
+    require_data(series.iter().any(|series| !series.points.is_empty()))
 }
 
 fn check_map(map: &HeatMap) -> Result<(), String> {
     let columns = map.rows.first().map_or(0, Vec::len);
-    has(columns > 0)?;
+    require_data(columns > 0)?;
     for (axis, cells) in [(&map.x, columns), (&map.y, map.rows.len())] {
         let ChartAxis { label, scale, limits, .. } = axis;
         match scale {
@@ -92,7 +92,7 @@ fn check_map(map: &HeatMap) -> Result<(), String> {
             ));
         }
         for (i, &value) in row.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
-            showable(&map.value, value, || format!("the value at row {j}, column {i}"))?;
+            check_value(&map.value, value, || format!("the value at row {j}, column {i}"))?;
         }
     }
     Ok(())
@@ -100,8 +100,8 @@ fn check_map(map: &HeatMap) -> Result<(), String> {
 
 fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Result<(), String> {
     let [[left, low], [right, high]] = *window;
-    interval("the window's width", [left, right])?;
-    interval("the window's height", [low, high])?;
+    check_interval("the window's width", [left, right])?;
+    check_interval("the window's height", [low, high])?;
     let height = width * (high - low) / (right - left);
     if !(*width >= SIDES[0] && width.max(height) <= SIDES[1]) {
         let [width, height] = [*width, height].map(|side| significant(side, 6));
@@ -111,16 +111,16 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
         ));
     }
     if let Some((lowest, highest, what)) = shades {
-        interval(&format!("the shade `{what}`"), [*lowest, *highest])?;
+        check_interval(&format!("the shade `{what}`"), [*lowest, *highest])?;
     }
     for (i, shape) in shapes.iter().enumerate() {
         let place = || format!("a number of shape {i}");
         if let DrawnShape::Disc { tint: Tint::Shade(shade), .. } = shape {
-            finite(*shade, place)?;
+            check_finite(*shade, place)?;
         }
         for (value, low) in shape.extent().into_iter().flat_map(|corner| corner.into_iter().zip([left, low]))
         {
-            finite(value, place)?;
+            check_finite(value, place)?;
             let pixels = width / (right - left) * (value - low).abs();
             if pixels > FARTHEST || pixels.is_nan() {
                 let [value, pixels] = [significant(value, 6), significant(pixels, 2)];
@@ -131,33 +131,33 @@ fn check_drawing(Drawing { window, width, shapes, shades, .. }: &Drawing) -> Res
             }
         }
     }
-    has(!shapes.is_empty())
+    require_data(!shapes.is_empty())
 }
 
 fn check_axis(axis: &ChartAxis) -> Result<(), String> {
     let Some(limits) = axis.limits else { return Ok(()) };
     let place = format!("the axis `{}`", axis.label);
-    limits.into_iter().try_for_each(|end| showable(axis, end, || format!("an end of {place}")))?;
-    interval(&place, limits)
+    limits.into_iter().try_for_each(|end| check_value(axis, end, || format!("an end of {place}")))?;
+    check_interval(&place, limits)
 }
 
-fn has(something: bool) -> Result<(), String> {
+fn require_data(something: bool) -> Result<(), String> {
     if something { Ok(()) } else { Err("it has no data to draw".to_owned()) }
 }
 
-fn interval(place: &str, ends: [f64; 2]) -> Result<(), String> {
+fn check_interval(place: &str, ends: [f64; 2]) -> Result<(), String> {
     let length = ends[1] - ends[0];
-    if length > 0.0 && length.is_finite() { Ok(()) } else { Err(no_interval(place, ends)) }
+    if length > 0.0 && length.is_finite() { Ok(()) } else { Err(interval_error(place, ends)) }
 }
 
 /// Describes ends that are not an interval.
-pub(crate) fn no_interval(place: &str, ends: [f64; 2]) -> String {
+pub(crate) fn interval_error(place: &str, ends: [f64; 2]) -> String {
     let [low, high] = ends.map(|end| significant(end, 6));
     format!("{place} goes from {low} to {high}; expected increasing ends at a finite distance")
 }
 
-fn showable(axis: &ChartAxis, value: f64, place: impl Fn() -> String) -> Result<(), String> {
-    finite(value, &place)?;
+fn check_value(axis: &ChartAxis, value: f64, place: impl Fn() -> String) -> Result<(), String> {
+    check_finite(value, &place)?;
     let problem = match &axis.scale {
         Scale::Logarithmic if value <= 0.0 => "a logarithmic axis needs positive numbers".to_owned(),
         Scale::Names(all) if value < -0.5 || value > all.len() as f64 - 0.5 => {
@@ -168,6 +168,6 @@ fn showable(axis: &ChartAxis, value: f64, place: impl Fn() -> String) -> Result<
     Err(format!("{} is {}, but {problem}", place(), significant(value, 6)))
 }
 
-fn finite(value: f64, place: impl Fn() -> String) -> Result<(), String> {
+fn check_finite(value: f64, place: impl Fn() -> String) -> Result<(), String> {
     if value.is_finite() { Ok(()) } else { Err(format!("{} is {value}; expected a finite number", place())) }
 }

@@ -12,7 +12,7 @@ pub(crate) fn data(figure: &Figure) -> Option<FormattedTable> {
     let (columns, rows) = match &figure.picture {
         Picture::Charts(panels) => {
             let (mut columns, rows) =
-                (headings(&panels.first()?.1), panels.iter().map(|(_, chart)| points(chart)));
+                (headings(&panels.first()?.1), panels.iter().map(|(_, chart)| chart_rows(chart)));
             if panels.iter().all(|(name, _)| name.is_empty()) {
                 (columns, rows.flatten().collect())
             } else {
@@ -24,7 +24,7 @@ pub(crate) fn data(figure: &Figure) -> Option<FormattedTable> {
                 (columns, rows.zip(panels).flat_map(named).collect())
             }
         }
-        Picture::Map(map) => cells(map),
+        Picture::Map(map) => map_table(map),
         Picture::Drawing(_) | Picture::Drawn { .. } => return None,
     };
     Some(FormattedTable {
@@ -55,7 +55,7 @@ fn number(value: f64) -> TableCell {
 }
 
 /// Returns the number, or the name that it represents on an axis of names.
-fn place(axis: &ChartAxis, value: f64) -> TableCell {
+fn axis_cell(axis: &ChartAxis, value: f64) -> TableCell {
     match &axis.scale {
         Scale::Names(names) => {
             names.get(value.round() as usize).cloned().map_or(TableCell::Nothing, TableCell::Text)
@@ -68,18 +68,24 @@ fn headings(Chart { x, y, .. }: &Chart) -> Vec<String> {
     ["series".to_owned(), x.heading(), y.heading(), "lowest".to_owned(), "highest".to_owned()].to_vec()
 }
 
-fn points(Chart { x, y, series, .. }: &Chart) -> Vec<Vec<TableCell>> {
+fn chart_rows(Chart { x, y, series, .. }: &Chart) -> Vec<Vec<TableCell>> {
     let rows = series.iter().flat_map(|series| {
         series.points.iter().map(|point| {
             let [low, high] =
                 point.spread.map_or([TableCell::Nothing, TableCell::Nothing], |ends| ends.map(number));
-            vec![TableCell::Text(series.name.clone()), place(x, point.x), place(y, point.y), low, high]
+            vec![
+                TableCell::Text(series.name.clone()),
+                axis_cell(x, point.x),
+                axis_cell(y, point.y),
+                low,
+                high,
+            ]
         })
     });
     rows.collect()
 }
 
-fn cells(HeatMap { x, y, value, rows }: &HeatMap) -> (Vec<String>, Vec<Vec<TableCell>>) {
+fn map_table(HeatMap { x, y, value, rows }: &HeatMap) -> (Vec<String>, Vec<Vec<TableCell>>) {
     let middle = |axis: &ChartAxis, at: usize, count: usize| {
         let [low, high] = axis.limits.unwrap_or([0.0, count as f64]);
         let part = (at as f64 + 0.5) / count as f64;
@@ -96,7 +102,7 @@ fn cells(HeatMap { x, y, value, rows }: &HeatMap) -> (Vec<String>, Vec<Vec<Table
         _ => middle(x, at, across).to_string(),
     });
     let lines = rows.iter().enumerate().map(|(row, values)| {
-        let middle = place(y, middle(y, row, rows.len()));
+        let middle = axis_cell(y, middle(y, row, rows.len()));
         std::iter::once(middle).chain(values.iter().copied().map(number)).collect()
     });
     (std::iter::once(corner).chain(columns).collect(), lines.collect())
@@ -130,14 +136,14 @@ mod tests {
         let axis = |label| ChartAxis::linear(label, Some("m")).between([0.0, 4.0]);
         let rows = vec![vec![1.0, 2.0], vec![3.0, f64::NAN]];
         let map = HeatMap { x: axis("x"), y: axis("y"), value: axis("depth"), rows };
-        let (columns, rows) = cells(&map);
+        let (columns, rows) = map_table(&map);
         assert_eq!(columns, ["depth (m) by y (m) down, x (m) across", "1", "3"]);
         assert_eq!(rows[1], [TableCell::Number(3.0, 6), TableCell::Number(3.0, 6), TableCell::Nothing]);
         let (x, y) = (
             ChartAxis::names("search", ["lists", "lattice"]),
             ChartAxis::logarithmic("n", None).between([1.0, 1e4]),
         );
-        let (columns, rows) = cells(&HeatMap { x, y, ..map });
+        let (columns, rows) = map_table(&HeatMap { x, y, ..map });
         assert_eq!(columns[1..], ["lists", "lattice"]);
         assert_eq!(rows[1][0], TableCell::Number(1000.0, 6));
     }

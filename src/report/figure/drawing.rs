@@ -2,7 +2,7 @@
 
 use super::axis::AxisRange;
 use super::style::{self, Colour, LINE};
-use super::writer::{END, MIDDLE, Svg, at, stroke, tenths};
+use super::writer::{END, MIDDLE, Svg, box_attributes, stroke, tenths};
 use super::{Drawing, DrawnShape, Guide, Scale, Tint, font, map};
 use std::collections::BTreeMap;
 use stripmine_physics::number::significant;
@@ -40,7 +40,7 @@ pub(crate) fn draw(title: &str, drawing: &Drawing) -> Svg {
     if let Some((lowest, highest, what)) = &drawing.shades {
         let (heading, ends) = (what.clone(), [*lowest, *highest]);
         svg.size[1] -= 0.5 * margin;
-        map::bar(&mut svg, &AxisRange { heading, scale: Scale::Linear, ends }, zoom);
+        map::add_colour_bar(&mut svg, &AxisRange { heading, scale: Scale::Linear, ends }, zoom);
     }
     svg
 }
@@ -85,7 +85,7 @@ impl DrawingView<'_> {
             }
             DrawnShape::Rectangle { corners, tint } => {
                 let [[left, bottom], [right, top]] = corners.map(|corner| self.place(corner));
-                let place = at([left, top], [right - left, bottom - top]);
+                let place = box_attributes([left, top], [right - left, bottom - top]);
                 let fill = self.colour(*tint).map_or("none".to_owned(), |colour| colour.to_string());
                 svg.add(format_args!("<rect{place} fill=\"{fill}\"{}/>", self.ink()));
             }

@@ -3,10 +3,10 @@
 use super::axis::AxisRange;
 use super::plane::{self, Plane};
 use super::style;
-use super::writer::{MIDDLE, Svg, at, escaped, stroke, tenths};
+use super::writer::{MIDDLE, Svg, box_attributes, escaped, stroke, tenths};
 use super::{ChartAxis, HeatMap, Scale, font};
 use std::collections::BTreeSet;
-use stripmine_physics::number::{in_tens, significant};
+use stripmine_physics::number::{significant, with_power_of_ten};
 
 /// Maximum length of a colour bar, and its thickness (pixels).
 const BAR: f64 = 440.0;
@@ -17,19 +17,19 @@ const DIGITS: usize = 2;
 pub(crate) fn draw(title: &str, map: &HeatMap) -> Result<Svg, String> {
     let [x, y] = [&map.x, &map.y].map(|axis| AxisRange::new(axis, std::iter::empty()));
     let (x, y) = (x?, y?);
-    let shades = shades(&map.value, map.rows.iter().flatten().copied().filter(|value| !value.is_nan()))?;
+    let shades = shade_axis(&map.value, map.rows.iter().flatten().copied().filter(|value| !value.is_nan()))?;
     let mut svg = Svg::new(title, style::WIDTH, 1.0);
     let planes = plane::draw(&mut svg, &x, &y, &[("", vec![])]);
     let plane = &planes[0];
     let heading = format!(" data-value=\"{}\"", escaped(&shades.heading));
-    plane.fill(&mut svg, &heading, |svg| cells(svg, map, &shades, plane));
-    numbers(&mut svg, map, &shades, plane);
-    bar(&mut svg, &shades, 1.0);
+    plane.fill(&mut svg, &heading, |svg| add_cells(svg, map, &shades, plane));
+    add_cell_values(&mut svg, map, &shades, plane);
+    add_colour_bar(&mut svg, &shades, 1.0);
     Ok(svg)
 }
 
 /// Returns the axis of the shades; without limits it spans exactly the values of the map.
-fn shades(axis: &ChartAxis, values: impl Iterator<Item = f64> + Clone) -> Result<AxisRange, String> {
+fn shade_axis(axis: &ChartAxis, values: impl Iterator<Item = f64> + Clone) -> Result<AxisRange, String> {
     let [low, high] = [f64::min, f64::max].map(|it| values.clone().reduce(it).unwrap_or(f64::NAN));
     let is_exact = axis.limits.is_none() && low < high;
     if is_exact {
@@ -45,13 +45,13 @@ fn is_signed(shades: &AxisRange) -> bool {
 }
 
 fn level(shades: &AxisRange, value: f64) -> u8 {
-    style::level(shades.part(value), is_signed(shades))
+    style::level(shades.fraction_of(value), is_signed(shades))
 }
 
 /// Adds the cells of a map in units of cells. Cells of one colour are one path; adjacent cells in a row are one line as wide as a cell is
 /// high. A line continues under cells of higher levels, which are painted later; this saves a fifth of the lines. Edges are not antialiased,
 /// which would show as seams.
-fn cells(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
+fn add_cells(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
     // Rows from the top; 1 is the lowest level, 0 an empty cell.
     let level = |&value: &f64| if value.is_nan() { 0 } else { 1 + u32::from(level(shades, value)) };
     let rows: Vec<Vec<u32>> = map.rows.iter().rev().map(|row| row.iter().map(level).collect()).collect();
@@ -81,15 +81,15 @@ fn cells(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
         let level = (level - 1) as u8;
         let part = f64::from(level % style::SHADES) / f64::from(style::SHADES - 1);
         let look = stroke(style::shade(level), 1.0);
-        svg.named(&in_tens(shades.value(part), 3), |svg| svg.path(&look, &d));
+        svg.named(&with_power_of_ten(shades.value(part), 3), |svg| svg.path(&look, &d));
     }
     svg.add("</g>");
 }
 
 /// Adds the values of a map if they fit into its cells.
-fn numbers(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
+fn add_cell_values(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
     let text = |value: &f64| {
-        if value.is_nan() { String::new() } else { in_tens(*value, DIGITS).replace('-', "−") }
+        if value.is_nan() { String::new() } else { with_power_of_ten(*value, DIGITS).replace('-', "−") }
     };
     let words: Vec<Vec<String>> = map.rows.iter().map(|row| row.iter().map(text).collect()).collect();
     let [across, up] = [plane.size[0] / words[0].len() as f64, plane.size[1] / words.len() as f64];
@@ -109,7 +109,7 @@ fn numbers(svg: &mut Svg, map: &HeatMap, shades: &AxisRange, plane: &Plane) {
 }
 
 /// Adds a colour bar below a picture, with a heading and tick marks; a short bar shows its ends and middle.
-pub(crate) fn bar(svg: &mut Svg, shades: &AxisRange, zoom: f64) {
+pub(crate) fn add_colour_bar(svg: &mut Svg, shades: &AxisRange, zoom: f64) {
     let [picture, top] = svg.size;
     let (size, margin, is_signed) = (style::LABEL * zoom, style::MARGIN * zoom, is_signed(shades));
     // Numbers at the ends extend beyond the bar.
@@ -121,9 +121,9 @@ pub(crate) fn bar(svg: &mut Svg, shades: &AxisRange, zoom: f64) {
     let stops: String = stops.collect();
     let name = format!("shades{}", u8::from(is_signed));
     svg.define(format!("<linearGradient id=\"{name}\">{stops}</linearGradient>"));
-    let place = at([left, top], [width, height]);
+    let place = box_attributes([left, top], [width, height]);
     svg.add(format_args!("<rect{place} fill=\"url(#{name})\"{}/>", stroke(style::INK, style::LINE * zoom)));
-    let mut marks = shades.marks(width, |label| font::width(label, size) + 2.0 * size);
+    let mut marks = shades.tick_marks(width, |label| font::width(label, size) + 2.0 * size);
     marks.retain(|(_, label)| !label.is_empty());
     if marks.len() < 3 {
         let number = |part| significant(shades.value(part), 3).replace('-', "−");

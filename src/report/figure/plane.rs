@@ -1,7 +1,7 @@
 //! Planes between two axes, one or several side by side, with tick marks and headings.
 
 use super::axis::{AxisRange, TickMark};
-use super::writer::{END, MIDDLE, Svg, at, stroke, tenths};
+use super::writer::{END, MIDDLE, Svg, box_attributes, stroke, tenths};
 use super::{Scale, font, style};
 
 /// Length of a labelled mark, length of a small mark, and distance from a mark to its label (pixels).
@@ -29,7 +29,7 @@ impl Plane {
     /// Returns the position of a point on the picture.
     pub(super) fn place(&self, x: f64, y: f64) -> [f64; 2] {
         let Plane { corner: [left, top], size: [width, height], .. } = self;
-        [left + width * self.x.part(x), top + height * (1.0 - self.y.part(y))]
+        [left + width * self.x.fraction_of(x), top + height * (1.0 - self.y.fraction_of(y))]
     }
 
     /// Adds elements clipped to the plane. `more` are further attributes.
@@ -73,7 +73,10 @@ impl Plane {
         }
         svg.path(&stroke(style::GRID, 1.0), &grid);
         svg.path(&stroke(style::INK, style::LINE), &marks);
-        let frame = at(self.corner.map(|it| it - 0.5 * style::LINE), self.size.map(|it| it + style::LINE));
+        let frame = box_attributes(
+            self.corner.map(|it| it - 0.5 * style::LINE),
+            self.size.map(|it| it + style::LINE),
+        );
         svg.add(format_args!("<rect fill=\"none\"{frame}{}/>", stroke(style::INK, style::LINE)));
     }
 }
@@ -103,7 +106,7 @@ pub(crate) fn draw(svg: &mut Svg, x: &AxisRange, y: &AxisRange, heads: &[PlaneHe
         Scale::Names(names) => (30.0 * names.len() as f64).max(120.0),
         _ => [style::PLOT_HEIGHT, 230.0, 180.0][columns - 1],
     };
-    let y_marks = y.marks(height, |_| 2.0 * LINE);
+    let y_marks = y.tick_marks(height, |_| 2.0 * LINE);
     let widest = |marks: &[TickMark]| font::widest(marks.iter().map(|mark| &mark.1), size);
     let heading = font::wrap(&y.heading, size, height.max(style::PLOT_HEIGHT));
     // Planes are aligned to whole pixels.
@@ -111,7 +114,7 @@ pub(crate) fn draw(svg: &mut Svg, x: &AxisRange, y: &AxisRange, heads: &[PlaneHe
     let (left, begin) = (left.ceil(), svg.size[1].ceil());
     let gaps = GAP * (columns - 1) as f64;
     let width = |right: f64| ((style::WIDTH - left - right - gaps) / columns as f64).floor();
-    let marks = |width| x.marks(width, |label| (font::width(label, size) + 1.2 * size).max(3.5 * size));
+    let marks = |width| x.tick_marks(width, |label| (font::width(label, size) + 1.2 * size).max(3.5 * size));
     // Half of the last number extends beyond the axis.
     let is_named = matches!(x.scale, Scale::Names(_));
     let beyond = if is_named { 0.0 } else { 0.5 * widest(&marks(width(style::MARGIN))) };

@@ -3,7 +3,7 @@
 use super::axis::AxisRange;
 use super::plane::{self, Plane, PlaneHead};
 use super::style::{self, Colour, SeriesLook};
-use super::writer::{Svg, at};
+use super::writer::{Svg, box_attributes};
 use super::{AxisDirection, Chart, ChartAxis, ChartBand, Scale, Series, font, series};
 
 /// Width of a line marking a value (pixels).
@@ -53,13 +53,13 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
     let looks = style::looks(&all);
     let mut svg = Svg::new(title, style::WIDTH, 1.0);
     let heads: Vec<PlaneHead> =
-        panels.iter().map(|(name, chart)| (name.as_str(), labels(chart, &x))).collect();
+        panels.iter().map(|(name, chart)| (name.as_str(), line_labels(chart, &x))).collect();
     let planes = plane::draw(&mut svg, &x, &y, &heads);
     for ((plane, chart), seen) in planes.iter().zip(charts()).zip(&of_panels) {
         plane.fill(&mut svg, "", |svg| {
-            bands(chart).for_each(|(band, colour)| area(svg, plane, band, colour));
+            bands(chart).for_each(|(band, colour)| add_band(svg, plane, band, colour));
             // Shaded areas of all series at the bottom, then curves, markers on top.
-            for add in [series::ground, series::curve, series::points] {
+            for add in [series::add_ribbon, series::add_curve, series::add_points] {
                 seen.iter().for_each(|&(index, series)| add(svg, plane, &looks[index], series));
             }
         });
@@ -76,15 +76,15 @@ pub(crate) fn draw(title: &str, panels: &[(String, Chart)]) -> Result<Svg, Strin
         }
     }
     entries.retain(|(words, _)| !words.is_empty());
-    legend(&mut svg, &entries);
+    add_legend(&mut svg, &entries);
     svg.size[1] += style::MARGIN;
     Ok(svg)
 }
 
 /// Returns the labels of a chart's vertical lines with their positions, from the left.
-fn labels<'a>(chart: &'a Chart, x: &AxisRange) -> Vec<(f64, &'a str)> {
+fn line_labels<'a>(chart: &'a Chart, x: &AxisRange) -> Vec<(f64, &'a str)> {
     let lines = chart.bands.iter().filter(|band| band.along == AxisDirection::X && band.is_line());
-    let placed = lines.map(|band| (x.part(band.ends[0]), band.label.as_str()));
+    let placed = lines.map(|band| (x.fraction_of(band.ends[0]), band.label.as_str()));
     let mut labels: Vec<_> = placed.filter(|(part, _)| (0.0..=1.0).contains(part)).collect();
     labels.sort_by(|a, b| a.0.total_cmp(&b.0));
     labels
@@ -104,11 +104,11 @@ fn bands(chart: &Chart) -> impl Iterator<Item = (&ChartBand, Colour)> {
 }
 
 /// Adds the visible part of a band, with its label.
-fn area(svg: &mut Svg, plane: &Plane, band: &ChartBand, colour: Colour) {
+fn add_band(svg: &mut Svg, plane: &Plane, band: &ChartBand, colour: Colour) {
     let axis = if band.along == AxisDirection::X { &plane.x } else { &plane.y };
     let ([left, top], [width, height]) = (plane.corner, plane.size);
     let length = if band.along == AxisDirection::X { width } else { height };
-    let mut ends = band.ends.map(|end| axis.part(end) * length);
+    let mut ends = band.ends.map(|end| axis.fraction_of(end) * length);
     if band.is_line() {
         ends = [ends[0] - 0.5 * LINE, ends[0] + 0.5 * LINE];
     }
@@ -118,7 +118,9 @@ fn area(svg: &mut Svg, plane: &Plane, band: &ChartBand, colour: Colour) {
         AxisDirection::Y => ([left, top + height - to], [width, to - from]),
     };
     if from < to {
-        svg.named(&band.label, |svg| svg.add(format_args!("<rect{} fill=\"{colour}\"/>", at(corner, size))));
+        svg.named(&band.label, |svg| {
+            svg.add(format_args!("<rect{} fill=\"{colour}\"/>", box_attributes(corner, size)))
+        });
     }
 }
 
@@ -131,7 +133,7 @@ enum LegendSample {
 }
 
 /// Adds a legend below a picture, in as many columns as the words allow.
-fn legend(svg: &mut Svg, entries: &[(&String, LegendSample)]) {
+fn add_legend(svg: &mut Svg, entries: &[(&String, LegendSample)]) {
     let width = svg.size[0] - 2.0 * style::MARGIN + BESIDE;
     let wrapped = |columns: usize| {
         let most = width / columns as f64 - LENGTH - TO_WORDS - BESIDE;
@@ -151,9 +153,9 @@ fn legend(svg: &mut Svg, entries: &[(&String, LegendSample)]) {
             let left = style::MARGIN + width / columns as f64 * i as f64;
             let middle = top + 0.5 * style::LABEL * font::CAPITAL;
             match &entry.1 {
-                LegendSample::Series(look) => series::sample(svg, look, [left, middle], LENGTH),
+                LegendSample::Series(look) => series::add_legend_sample(svg, look, [left, middle], LENGTH),
                 LegendSample::Ground(colour, height) => {
-                    let place = at([left, middle - 0.5 * height], [LENGTH, *height]);
+                    let place = box_attributes([left, middle - 0.5 * height], [LENGTH, *height]);
                     svg.add(format_args!("<rect{place} fill=\"{colour}\"/>"));
                 }
             }

@@ -2,7 +2,7 @@
 
 use super::plane::Plane;
 use super::style::{CURVE, MARKERS, PAPER, SeriesLook, has_markers, is_scattered};
-use super::writer::{Svg, bends, stroke, tenths, through};
+use super::writer::{Svg, path_data, simplified_line, stroke, tenths};
 use super::{Scale, Series, SeriesPoint, Style};
 
 /// Size ratio of large marks to points.
@@ -13,24 +13,24 @@ const CAP: f64 = 4.5;
 pub(crate) const GROUND: f64 = 15.0;
 
 /// Adds the shaded area between the ends of the spreads of a ribbon.
-pub(crate) fn ground(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
+pub(crate) fn add_ribbon(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
     let end = |which: usize| {
         let ends = series.points.iter().filter_map(move |it| Some((it.x, it.spread?[which])));
         ends.map(|(x, y)| plane.place(x, y))
     };
     if look.style == Style::Ribbon {
         let outline: Vec<_> = end(0).chain(end(1).collect::<Vec<_>>().into_iter().rev()).collect();
-        light(svg, look, &through(&outline));
+        light(svg, look, &path_data(&outline));
     }
 }
 
 /// Adds the curve of a series, if it has one. The curve carries the series' name if there are no markers.
-pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
+pub(crate) fn add_curve(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
     if is_scattered(look.style) || series.points.len() < 2 {
         return;
     }
     let places: Vec<_> = series.points.iter().map(|it| plane.place(it.x, it.y)).collect();
-    let d = through(&bends(&places));
+    let d = path_data(&simplified_line(&places));
     if has_markers(look.style) {
         line(svg, look, "", &d);
     } else {
@@ -39,7 +39,7 @@ pub(crate) fn curve(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Se
 }
 
 /// Adds the error bars and markers of a series, with its name. A single point always has a marker, and no marker is cut off.
-pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
+pub(crate) fn add_points(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &Series) {
     let mut bars = String::new();
     for &SeriesPoint { x, y, spread } in series.points.iter().filter(|_| look.style != Style::Ribbon) {
         let (Some(ends), cap) = (spread, 2.0 * CAP) else { continue };
@@ -52,7 +52,7 @@ pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &S
         }
     }
     let is_inside = |it: &&SeriesPoint| {
-        [plane.x.part(it.x), plane.y.part(it.y)].iter().all(|part| (0.0..=1.0).contains(part))
+        [plane.x.fraction_of(it.x), plane.y.fraction_of(it.y)].iter().all(|part| (0.0..=1.0).contains(part))
     };
     let marked = series.points.iter().filter(|_| has_markers(look.style) || series.points.len() == 1);
     let places: Vec<_> = marked.filter(is_inside).map(|it| plane.place(it.x, it.y)).collect();
@@ -65,14 +65,14 @@ pub(crate) fn points(svg: &mut Svg, plane: &Plane, look: &SeriesLook, series: &S
         }
         if !places.is_empty() {
             let marker = marker(svg, look);
-            let d = through(&places);
+            let d = path_data(&places);
             svg.add(format_args!("<g style=\"marker:url(#{marker})\">\n<path d=\"{d}\"/>\n</g>"));
         }
     });
 }
 
 /// Adds a legend sample that extends to the right of a position.
-pub(crate) fn sample(svg: &mut Svg, look: &SeriesLook, [left, y]: [f64; 2], length: f64) {
+pub(crate) fn add_legend_sample(svg: &mut Svg, look: &SeriesLook, [left, y]: [f64; 2], length: f64) {
     let [x, y, half, right] = [left, y, 0.5 * length, left + length].map(tenths);
     let d = format!("M{x} {y}h{half}h{half}");
     if look.style == Style::Ribbon {

@@ -59,7 +59,7 @@ impl Svg {
     /// Begins a window that clips its contents.
     pub(crate) fn window(&mut self, corner: [f64; 2], size: [f64; 2]) {
         let view = [corner, size].map(|it| it.map(tenths).join(" ")).join(" ");
-        self.add(format_args!("<svg{} viewBox=\"{view}\">", at(corner, size)));
+        self.add(format_args!("<svg{} viewBox=\"{view}\">", box_attributes(corner, size)));
     }
 
     /// Adds a definition, whose name is the same in every picture.
@@ -130,7 +130,7 @@ pub(crate) fn stroke(colour: style::Colour, width: f64) -> String {
 }
 
 /// Returns the attributes of a box: left and upper edge, width and height.
-pub(crate) fn at(corner: [f64; 2], size: [f64; 2]) -> String {
+pub(crate) fn box_attributes(corner: [f64; 2], size: [f64; 2]) -> String {
     let ([x, y], [width, height]) = (corner.map(tenths), size.map(tenths));
     format!(" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
@@ -160,7 +160,7 @@ fn hundredths(number: i64) -> String {
 
 /// Returns a path through positions to a hundredth of a pixel, from which a script of the page reads values. A single position is a line of
 /// length 0, because viewers need a line to draw a marker.
-pub(crate) fn through(places: &[[f64; 2]]) -> String {
+pub(crate) fn path_data(places: &[[f64; 2]]) -> String {
     let whole = |pixels: f64| (pixels.clamp(-FARTHEST, FARTHEST) * 100.0).round() as i64;
     let mut path = String::new();
     let mut before = [0; 2];
@@ -180,7 +180,7 @@ pub(crate) fn through(places: &[[f64; 2]]) -> String {
 }
 
 /// Removes the positions of a line that its straight segments pass within [`SEEN`].
-pub(crate) fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(crate) fn simplified_line(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let [first, .., last] = places else { return places.to_vec() };
     let [right, down] = [last[0] - first[0], last[1] - first[1]];
     let length = right.hypot(down);
@@ -193,9 +193,9 @@ pub(crate) fn bends(places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let farthest = (1..).zip(within).max_by(|a, b| off(*a.1).total_cmp(&off(*b.1)));
     match farthest {
         Some((at, &place)) if off(place) > SEEN || off(place).is_nan() => {
-            let mut all = bends(&places[..=at]);
+            let mut all = simplified_line(&places[..=at]);
             all.pop();
-            all.extend(bends(&places[at..]));
+            all.extend(simplified_line(&places[at..]));
             all
         }
         _ => vec![*first, *last],
@@ -232,16 +232,16 @@ mod tests {
     #[test]
     fn simplified_lines_keep_their_bends() {
         let straight: Vec<[f64; 2]> = (0..9).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
-        assert_eq!(bends(&straight), [[0.0, 0.0], [8.0, 16.0]]);
+        assert_eq!(simplified_line(&straight), [[0.0, 0.0], [8.0, 16.0]]);
         let bent = [&straight[..], &[[9.0, 0.0], [10.0, -16.0]]].concat();
-        assert_eq!(bends(&bent), [[0.0, 0.0], [8.0, 16.0], [10.0, -16.0]]);
-        assert_eq!(bends(&[[1.0, 1.0], [5.0, 5.0], [1.0, 1.0]]).len(), 3);
+        assert_eq!(simplified_line(&bent), [[0.0, 0.0], [8.0, 16.0], [10.0, -16.0]]);
+        assert_eq!(simplified_line(&[[1.0, 1.0], [5.0, 5.0], [1.0, 1.0]]).len(), 3);
     }
 
     #[test]
     fn paths_use_relative_steps() {
-        assert_eq!(through(&[[1.0, 2.0], [1.5, 1.0], [3.004, 1.25]]), "M1 2l.5-1 1.5 .25");
-        assert_eq!(through(&[[1.0, 2.0]]), "M1 2l0 0");
-        assert!(through(&[[1e300, 0.0]]).starts_with("M1000000 0"));
+        assert_eq!(path_data(&[[1.0, 2.0], [1.5, 1.0], [3.004, 1.25]]), "M1 2l.5-1 1.5 .25");
+        assert_eq!(path_data(&[[1.0, 2.0]]), "M1 2l0 0");
+        assert!(path_data(&[[1e300, 0.0]]).starts_with("M1000000 0"));
     }
 }

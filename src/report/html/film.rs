@@ -7,16 +7,16 @@ use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
 /// Element with JSON data that cannot be interpreted as a script or style: in JSON, `<` only occurs in strings.
-pub(crate) fn embedded(id: &str, data: &Value) -> Markup {
+pub(crate) fn json_element(id: &str, data: &Value) -> Markup {
     let text = data.to_string().replace('<', "\\u003c");
     html! { script type="application/json" id=[Some(id).filter(|id| !id.is_empty())] { (PreEscaped(text)) } }
 }
 
 /// Element for the player of a film; `instead` is shown without JavaScript.
-pub(crate) fn holder(film: &Film, instead: &Markup) -> Markup {
+pub(crate) fn film_element(film: &Film, instead: &Markup) -> Markup {
     html! {
         div.film data-label=(film.title) {
-            (embedded("", &data(film)))
+            (json_element("", &data(film)))
             noscript { p { "The film needs JavaScript. " (instead) } }
         }
     }
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn film_data_cannot_end_their_element() {
-        let text = embedded("x", &json!({ "name": "</script><script>alert(1)</script>", "less": "a<b" }))
+        let text = json_element("x", &json!({ "name": "</script><script>alert(1)</script>", "less": "a<b" }))
             .into_string();
         assert_eq!(text.matches("</script").count(), 1, "{text}");
         assert!(text.contains("\\u003c/script>"));

@@ -1,6 +1,6 @@
 //! Separate page for a film.
 
-use super::{PAGE, PLAYER, STRIPS, compact, film, head};
+use super::{PAGE, PLAYER, STRIPS, compact_script, film, head};
 use crate::report::section::Film;
 use maud::{DOCTYPE, PreEscaped, html};
 
@@ -15,15 +15,15 @@ pub(crate) fn film_page(shown: &Film, notes: &[String]) -> String {
             body.alone {
                 main {
                     h1 { (shown.title) }
-                    (film::holder(shown, &html! {}))
+                    (film::film_element(shown, &html! {}))
                     @for note in notes {
                         p.note { (note) }
                     }
                     p.note { "Space: play or pause. Arrow keys: next or previous frame. Home and End: first and last frame." }
                 }
-                (film::embedded("shades", &film::shades()))
+                (film::json_element("shades", &film::shades()))
                 @for script in [PAGE, STRIPS, PLAYER] {
-                    script { (PreEscaped(compact(script))) }
+                    script { (PreEscaped(compact_script(script))) }
                 }
             }
         }

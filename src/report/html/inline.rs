@@ -24,12 +24,12 @@ impl Inline {
         Inline {
             size: between("viewBox=\"", "\"").to_owned(),
             definitions: between("<defs>\n", "</defs>").to_owned(),
-            body: tight(body.trim_end().trim_end_matches("</svg>")),
+            body: compact_paths(body.trim_end().trim_end_matches("</svg>")),
         }
     }
 
     /// Repeats the picture of the element `id`, scaled to the available width.
-    pub(crate) fn again(&self, id: &str, title: &str) -> Markup {
+    pub(crate) fn reused_picture(&self, id: &str, title: &str) -> Markup {
         let sides: Vec<&str> = self.size.split(' ').skip(2).collect();
         let [width, height] = [0, 1].map(|at| sides.get(at).copied().unwrap_or("0"));
         html! {
@@ -57,7 +57,7 @@ impl Inline {
 
 /// Joins all lines, and removes blanks before minus signs in the data of paths, where the sign already separates numbers. Thousands of discs
 /// are drawn as relative steps.
-fn tight(body: &str) -> String {
+fn compact_paths(body: &str) -> String {
     const DATA: &str = " d=\"";
     let mut paths = body.split(DATA);
     let mut all = paths.next().unwrap_or_default().to_owned();
@@ -70,7 +70,7 @@ fn tight(body: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::tight;
+    use super::compact_paths;
 
     #[test]
     fn only_path_data_is_compacted() {
@@ -78,6 +78,6 @@ mod tests {
             "<path fill=\"none\" d=\"M1 -2h1m-3 -4h1\"/><text x=\"1\">a - b -c</text><path d=\"M0 0\"/>";
         let expected =
             "<path fill=\"none\" d=\"M1-2h1m-3-4h1\"/><text x=\"1\">a - b -c</text><path d=\"M0 0\"/>";
-        assert_eq!(tight(body), expected);
+        assert_eq!(compact_paths(body), expected);
     }
 }

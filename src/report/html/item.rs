@@ -8,7 +8,7 @@ use crate::report::figure::{Figure, data_file};
 use crate::report::section::Film;
 use crate::report::{FormattedTable, Section, TableCell};
 use maud::{Markup, html};
-use stripmine_physics::number::counted;
+use stripmine_physics::number::count_with_noun;
 
 /// Maximum pictures of an item on the page; further pictures are linked.
 const FIGURES: usize = 4;
@@ -46,7 +46,7 @@ pub(crate) fn render(section: &Section, pictures: &[Inline]) -> Markup {
                 dt { "Expected" }
                 dd { (prose(&section.expected)) }
             }
-            @if let Some(what) = folded(section) {
+            @if let Some(what) = folded_content(section) {
                 details {
                     summary { "More: " (what) }
                     @for paragraph in &section.details {
@@ -71,9 +71,9 @@ pub(crate) fn render(section: &Section, pictures: &[Inline]) -> Markup {
                 }
             }
             @if let Some(shown) = &section.film {
-                (moving(section, shown))
+                (film_figure(section, shown))
             }
-            (again(section))
+            (reproduction_notes(section))
         }
     }
 }
@@ -112,7 +112,7 @@ fn claims(section: &Section) -> Markup {
 }
 
 /// Description of the folded content; `None` if nothing is folded.
-fn folded(section: &Section) -> Option<String> {
+fn folded_content(section: &Section) -> Option<String> {
     let words: usize = section.details.iter().map(|paragraph| paragraph.split_whitespace().count()).sum();
     let what = [
         (words, "word", "words"),
@@ -120,7 +120,7 @@ fn folded(section: &Section) -> Option<String> {
         (section.tables.len().saturating_sub(1), "table", "tables"),
     ];
     let what = what.into_iter().filter(|(count, ..)| *count > 0);
-    let what: Vec<String> = what.map(|(count, one, many)| counted(count, one, many)).collect();
+    let what: Vec<String> = what.map(|(count, one, many)| count_with_noun(count, one, many)).collect();
     (!what.is_empty()).then(|| what.join(", "))
 }
 
@@ -154,11 +154,11 @@ fn heading(title: &str) -> Markup {
     html! { strong { (title) @if !ends_itself { "." } } }
 }
 
-fn moving(section: &Section, shown: &Film) -> Markup {
+fn film_figure(section: &Section, shown: &Film) -> Markup {
     let instead = html! { "Its frames are in the folder " (folder(&section.folder())) "." };
     html! {
         figure id={ (section.name) "-film" } {
-            (film::holder(shown, &instead))
+            (film::film_element(shown, &instead))
             figcaption { (heading(&shown.title)) }
         }
     }
@@ -185,7 +185,7 @@ fn table(table: &FormattedTable, folder: &str) -> Markup {
                     @for row in table.rows.iter().take(ROWS) {
                         tr {
                             @for cell in row {
-                                td class=[(!cell.is_number()).then_some("words")] { (cell.for_reading()) }
+                                td class=[(!cell.is_number()).then_some("words")] { (cell.formatted_text()) }
                             }
                         }
                     }
@@ -195,7 +195,7 @@ fn table(table: &FormattedTable, folder: &str) -> Markup {
         @if table.rows.len() > ROWS {
             @let file = format!("{folder}/{}.csv", table.name);
             p.note {
-                "First " (ROWS) " of " (TableCell::Count(table.rows.len() as u64).for_reading()) " rows; all rows: "
+                "First " (ROWS) " of " (TableCell::Count(table.rows.len() as u64).formatted_text()) " rows; all rows: "
                 a href=(file) { code { (file) } } "."
             }
         }
@@ -206,13 +206,13 @@ fn table(table: &FormattedTable, folder: &str) -> Markup {
 }
 
 /// Command, data, seeds and provenance of an item.
-fn again(section: &Section) -> Markup {
+fn reproduction_notes(section: &Section) -> Markup {
     let seeds: Vec<String> = section.seeds.iter().map(u64::to_string).collect();
     html! {
         div.again {
             h3 { "How to reproduce" }
             div.command {
-                code tabindex="0" { (section.again()) }
+                code tabindex="0" { (section.reproduce_command()) }
                 button type="button" data-copy="" { "Copy" }
             }
             p {

@@ -16,7 +16,7 @@ use crate::claims::ClaimVerdict;
 use inline::Inline;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
-use words::{badge, badges, kind, prose, sign};
+use words::{badge, badges, prose, verdict_class, verdict_sign};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -48,7 +48,7 @@ pub(crate) fn render(
         html lang="en" {
             head {
                 (head(&PreEscaped(MARK)))
-                style { (PreEscaped(on_dark_paper())) }
+                style { (PreEscaped(dark_picture_rules())) }
             }
             body {
                 a.skip href="#summary" { "To the summary" }
@@ -66,9 +66,9 @@ pub(crate) fn render(
                     }
                     (footer())
                 }
-                (film::embedded("shades", &film::shades()))
+                (film::json_element("shades", &film::shades()))
                 @for script in SCRIPTS {
-                    script { (PreEscaped(compact(script))) }
+                    script { (PreEscaped(compact_script(script))) }
                 }
             }
         }
@@ -77,7 +77,7 @@ pub(crate) fn render(
 }
 
 /// Removes indentation and comment lines from a script.
-fn compact(script: &str) -> String {
+fn compact_script(script: &str) -> String {
     let is_comment = |line: &str| line.starts_with("//") || line.starts_with("/**") && line.ends_with("*/");
     let lines = script.lines().map(str::trim_start).filter(|line| !line.is_empty() && !is_comment(line));
     lines.collect::<Vec<_>>().join("\n")
@@ -96,11 +96,11 @@ fn head(title: &PreEscaped<&str>) -> Markup {
 }
 
 /// Style rules of pictures on a dark screen.
-fn on_dark_paper() -> String {
+fn dark_picture_rules() -> String {
     format!("@media screen and (prefers-color-scheme:dark){{{}}}\n", style::dark_rules(".picture "))
 }
 
-fn of(chapter: Chapter, sections: &[Section]) -> Vec<&Section> {
+fn chapter_sections(chapter: Chapter, sections: &[Section]) -> Vec<&Section> {
     sections.iter().filter(|section| section.chapter == chapter).collect()
 }
 
@@ -109,7 +109,7 @@ fn contents(sections: &[Section]) -> Markup {
     html! {
         nav.contents aria-label="Contents" {
             p { a href="#summary" { "Results" } }
-            @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, of(chapter, sections))) {
+            @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, chapter_sections(chapter, sections))) {
                 @if !items.is_empty() {
                     p { (chapter.title()) }
                     ol {
@@ -117,8 +117,8 @@ fn contents(sections: &[Section]) -> Markup {
                             li {
                                 a href={ "#" (section.name) } { (section.title) }
                                 @for (verdict, count) in section.counts() {
-                                    "\u{a0}" span class={ "mark " (kind(verdict)) } title=(verdict.words()) {
-                                        (sign(verdict)) (count)
+                                    "\u{a0}" span class={ "mark " (verdict_class(verdict)) } title=(verdict.words()) {
+                                        (verdict_sign(verdict)) (count)
                                     }
                                 }
                             }
@@ -145,12 +145,12 @@ fn summary(sections: &[Section], pictures: &[Vec<Inline>], tally: &Tally) -> Mar
             (front(sections, pictures))
             details {
                 summary { "Programs, hosts and dates of these results" }
-                @for made in super::origins(sections) {
+                @for made in super::origin_sentences(sections) {
                     p.note { (made) }
                 }
             }
         }
-        @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, of(chapter, sections))) {
+        @for (chapter, items) in Chapter::ALL.map(|chapter| (chapter, chapter_sections(chapter, sections))) {
             @if !items.is_empty() {
                 div.scroll tabindex="0" role="region" aria-label={ "Summary: " (chapter.title()) } {
                     table.summary {
@@ -190,7 +190,7 @@ fn front(sections: &[Section], pictures: &[Vec<Inline>]) -> Markup {
                     article {
                         h2 { a href={ "#" (section.name) } { (section.title) } }
                         @if let (Some(picture), Some(figure)) = (pictures.first(), section.figures.first()) {
-                            div.picture { (picture.again(&item::picture_id(section, figure), &figure.title)) }
+                            div.picture { (picture.reused_picture(&item::picture_id(section, figure), &figure.title)) }
                         }
                         p { (prose(&section.answer)) }
                     }

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 /// Badge of a verdict: colour, sign and words.
 pub(super) fn badge(verdict: ClaimVerdict) -> Markup {
     html! {
-        span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (verdict.words()) }
+        span class={ "badge " (verdict_class(verdict)) } { (verdict_sign(verdict)) " " (verdict.words()) }
     }
 }
 
@@ -15,7 +15,7 @@ pub(super) fn badge(verdict: ClaimVerdict) -> Markup {
 pub(super) fn badges(section: &Section) -> Markup {
     html! {
         @for (verdict, count) in section.counts() {
-            span class={ "badge " (kind(verdict)) } { (sign(verdict)) " " (count) " " (verdict.words()) } " "
+            span class={ "badge " (verdict_class(verdict)) } { (verdict_sign(verdict)) " " (count) " " (verdict.words()) } " "
         }
         @if section.is_stale() {
             span.badge.not-tested title="Kernels or physics have changed since these results were made." { "stale" }
@@ -24,7 +24,7 @@ pub(super) fn badges(section: &Section) -> Markup {
 }
 
 /// Class of a verdict in the style sheet.
-pub(super) fn kind(verdict: ClaimVerdict) -> &'static str {
+pub(super) fn verdict_class(verdict: ClaimVerdict) -> &'static str {
     match verdict {
         ClaimVerdict::Reproduced => "reproduced",
         ClaimVerdict::NotReproduced => "not-reproduced",
@@ -35,7 +35,7 @@ pub(super) fn kind(verdict: ClaimVerdict) -> &'static str {
 }
 
 /// Sign of a verdict, readable without colour.
-pub(super) fn sign(verdict: ClaimVerdict) -> &'static str {
+pub(super) fn verdict_sign(verdict: ClaimVerdict) -> &'static str {
     match verdict {
         ClaimVerdict::Reproduced => "✓",
         ClaimVerdict::NotReproduced => "✗",

@@ -52,9 +52,9 @@ pub(crate) fn accuracy(
     trial: TrialControl<'_>,
     (scene, progress, journal): (&str, &dyn Fn(f64), &Journal),
 ) -> Result<FinishedItem, ExplainError> {
-    let findings = seen::seen(case, target, seconds, trial, (progress, journal))?;
+    let findings = seen::measure_findings(case, target, seconds, trial, (progress, journal))?;
     let quick = PlanTarget { limit: f64::INFINITY, ..target.clone() };
-    let plan = seen::planned(case, &quick, &findings, "").ok();
+    let plan = seen::plan_or_scene(case, &quick, &findings, "").ok();
     Ok(made(scene, target, &findings, plan.as_ref(), case))
 }
 
@@ -71,7 +71,7 @@ fn made(
         points(&curves),
         marks(plan, target),
         biases(findings, &curves),
-        wishes(findings, &curves),
+        cheapest_for_errors(findings, &curves),
     ])
 }
 
@@ -82,8 +82,8 @@ fn curves<'f>(case: &StudyCase, findings: &'f Findings) -> Vec<ErrorCurve<'f>> {
     for way in findings.ways.iter().filter(|way| way.dropped.is_none() && way.cost.is_some()) {
         let own = way.choice(case);
         let is_another = |(_, other): &(&MeasuredConfiguration, SettingChoice)| {
-            !own.agrees(other, ChoiceEffect::Order)
-                || own.scheme().is_none() && !own.agrees(other, ChoiceEffect::Cost)
+            !own.agrees_on(other, ChoiceEffect::Order)
+                || own.scheme().is_none() && !own.agrees_on(other, ChoiceEffect::Cost)
         };
         if chosen.iter().all(is_another) {
             chosen.push((way, own));
@@ -105,7 +105,7 @@ fn least_errors(
     let Some(cost) = way.cost else { return vec![] };
     if let (Some(drift), Some(step), Some(time)) = (&way.drift, way.step, case.duration()) {
         let of = |it: &StepDeviation| {
-            let seconds = findings.start + findings.of_rows(time) + cost * step / it.step * time;
+            let seconds = findings.start + findings.row_seconds(time) + cost * step / it.step * time;
             ErrorPoint { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
         };
         return drift.tried.iter().map(of).filter(|it| it.error.is_finite() && it.error > 0.0).collect();
@@ -113,7 +113,7 @@ fn least_errors(
     let mean = &findings.mean;
     // Costs of a unit of time: the steps alone, and its rows. The fixed rows of whole runs belong to the start.
     let rows = findings.row * mean.rows();
-    let start = findings.start + if rows > 0.0 { 0.0 } else { findings.of_rows(0.0) };
+    let start = findings.start + if rows > 0.0 { 0.0 } else { findings.row_seconds(0.0) };
     // A mean without fluctuations has no shortest run.
     let shortest = findings.whole.unwrap_or(if mean.apart > 0.0 { SHORTEST * mean.apart } else { 1.0 });
     let first = start + (cost + rows) * (shortest + mean.transient);
@@ -213,7 +213,7 @@ fn biases(findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
         .frame("biases", "Bias of the mean by the step")
 }
 
-fn wishes(findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
+fn cheapest_for_errors(findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
     let mean = findings.mean.mean.abs();
     let cheapest = |wish: f64| {
         let all = curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));

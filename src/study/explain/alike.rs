@@ -31,7 +31,7 @@ impl SceneFeatures {
     }
 
     /// Distance between two scenes, 0 for equal ones; none where they are not similar.
-    pub(super) fn apart(&self, other: &SceneFeatures) -> Option<f64> {
+    pub(super) fn feature_distance(&self, other: &SceneFeatures) -> Option<f64> {
         let of_particles = (self.particles.max(1) as f64 / other.particles.max(1) as f64).ln().abs();
         let apart = (of_particles / PARTICLES.ln())
             .max((self.packing_fraction - other.packing_fraction).abs() / PACKING);

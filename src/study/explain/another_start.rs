@@ -22,15 +22,15 @@ impl SceneTrials<'_> {
             ..way.clone()
         };
         let sample =
-            self.sampled_over(&another, way.step, SampleSpan::Seconds(self.shares[4] * self.seconds)).ok()?;
+            self.sample_over(&another, way.step, SampleSpan::Seconds(self.shares[4] * self.seconds)).ok()?;
         let mut other = sample.known()?;
         if differ(&mean.known, &other) {
             let observed = (self.case.entry.quantities, self.target.place);
             let later = mean.known.transient.max(other.transient);
             // A run that ends before that gives no mean.
-            other = after(&sample.rows, observed, (&other, sample.pace()), later)?;
+            other = mean_after(&sample.rows, observed, (&other, sample.pace()), later)?;
             let pace = sample.pace().map(|_| RowPace { cost: mean.cost, row: mean.row });
-            mean.known = after(&mean.rows, observed, (&mean.known, pace), later).unwrap_or(mean.known);
+            mean.known = mean_after(&mean.rows, observed, (&mean.known, pace), later).unwrap_or(mean.known);
             mean.transients = vec![mean.known.transient];
         }
         mean.transients.push(other.transient);
@@ -44,7 +44,7 @@ fn differ(one: &MeanEstimate, other: &MeanEstimate) -> bool {
 }
 
 /// Returns the mean over the rows after a time, or the known mean if its transient already ends later; none if the remaining rows have no mean.
-fn after(
+fn mean_after(
     rows: &[Vec<f64>],
     (quantities, place): (&'static [ObservedQuantity], usize),
     (known, pace): (&MeanEstimate, Option<RowPace>),
@@ -57,7 +57,7 @@ fn after(
     rows.iter().filter(|row| row[0] >= time).for_each(|row| later.add(row));
     match Average::of(&later, place).outcome {
         AverageOutcome::Mean(estimate) => {
-            let values = values(rows, place, &later.course(place), pace.is_some());
+            let values = values(rows, place, &later.time_series(place), pace.is_some());
             Some(MeanEstimate::of(estimate, &values, pace))
         }
         _ => None,
@@ -81,7 +81,7 @@ mod tests {
         let rows: Vec<Vec<f64>> = (0..1000).map(|at| vec![f64::from(at), value(at)]).collect();
         let missed = MeanEstimate { mean: 4.7, bar: 0.5, transient: 5.0, ..MeanEstimate::exactly(4.7) };
         let pace = Some(RowPace { cost: 1.0, row: 0.0 });
-        let cut = |transient: f64| after(&rows, (OBSERVED, 1), (&missed, pace), transient);
+        let cut = |transient: f64| mean_after(&rows, (OBSERVED, 1), (&missed, pace), transient);
         let known = cut(100.0).unwrap();
         assert!((known.mean - 3.0).abs() < 0.01 && known.transient >= 100.0, "{known:?}");
         assert_eq!(cut(5.0).map(|it| it.mean), Some(4.7));

@@ -1,8 +1,8 @@
 //! Bias of a mean by the time step, from paired runs at a step and at half of it; other steps follow from the order of the scheme.
 
-use crate::study::trial::{Window, any_number, part, steady};
+use crate::study::trial::{Window, any_number, shown_part, steady_bias};
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::of_independent;
+use stripmine_physics::averages::mean_of_independent;
 use stripmine_physics::number::significant;
 
 /// Part of the correction for a short window that counts as its uncertainty: the memory of a quantity is rarely a single exponential.
@@ -72,11 +72,11 @@ impl StepDifference {
         (memory, of_run): (f64, f64),
         (step, reference): (f64, f64),
     ) -> StepDifference {
-        let parts = [window, before].map(|it| part(it.time, memory));
+        let parts = [window, before].map(|it| shown_part(it.time, memory));
         let pairs = window.differences[place].iter().zip(&before.differences[place]);
         let told: Vec<f64> = pairs
             .map(|(now, before)| {
-                let [bias, at_once] = steady([*now, *before], parts);
+                let [bias, at_once] = steady_bias([*now, *before], parts);
                 of_run * bias + (1.0 - of_run) * at_once
             })
             .collect();
@@ -85,7 +85,7 @@ impl StepDifference {
             step,
             reference,
             shown: shown.iter().sum::<f64>() / shown.len() as f64,
-            difference: of_independent(&told).unwrap_or([f64::NAN, f64::INFINITY]),
+            difference: mean_of_independent(&told).unwrap_or([f64::NAN, f64::INFINITY]),
         }
     }
 }
@@ -310,12 +310,12 @@ impl BiasEstimate {
     }
 
     /// Total error of the mean, with a statistical error of `chance` at 95 % confidence.
-    pub(crate) fn with(self, chance: f64) -> f64 {
+    pub(crate) fn with_statistical_error(self, chance: f64) -> f64 {
         self.shift + chance
     }
 
     /// Part of an error left to statistics; none where the bias uses it up.
-    pub(crate) fn leaves(self, error: f64) -> Option<f64> {
+    pub(crate) fn error_left_to_statistics(self, error: f64) -> Option<f64> {
         Some(error - self.shift).filter(|left| *left > 0.0)
     }
 }
@@ -362,7 +362,7 @@ mod tests {
     fn insignificant_bias_counts_as_noise() {
         let bias = Bias::of(&[seen(0.2, 0.0, [0.1, 0.4])], 1.0, 2.0, 1.0, 16);
         assert!(!bias.is_significant() && (bias.below() - 0.5).abs() < 1e-6);
-        assert_eq!((bias.expected(), bias.at(0.2).leaves(0.3)), (0.0, Some(0.3)));
+        assert_eq!((bias.expected(), bias.at(0.2).error_left_to_statistics(0.3)), (0.0, Some(0.3)));
     }
 
     /// By hand: error bars of 0.3 and 0.1 have the weights 1 and 9; at twice the step, with power 2, the shadow energy predicts four times as much.

@@ -5,7 +5,7 @@
 use super::findings::{MeasuredConfiguration, SceneTrials};
 use super::mean::TrialMean;
 use crate::study::StudyCase;
-use crate::study::state::delayed;
+use crate::study::state::delayed_scene;
 use std::sync::atomic::Ordering;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::{EncounterGeometry, StartPurpose, Until};
@@ -40,22 +40,23 @@ impl SceneTrials<'_> {
         mean: &TrialMean,
     ) -> Option<f64> {
         let trials = self.case.entry.trials?;
-        let speed = approach(&mean.states, &self.case.prepared.domain);
+        let speed = mean_approach_speed(&mean.states, &self.case.prepared.domain);
         let reference = self.choice(way).with(trials.references[0]).overrides();
         let (mut off, mut all, mut lost) = ([0.0; 3], 0.0, [0.0; 2]);
         for offset in OFFSETS {
             let text = (trials.encounter)(&self.case.prepared, EncounterGeometry { speed, offset })?;
-            let case = self.case.beside(&text).ok()?;
+            let case = self.case.with_text_of(&text).ok()?;
             // Grains at rest hardly collide.
             if case.duration()? > MOST * step {
                 return None;
             }
-            let exact = self.changed(&case, reference.clone().set(trials.step, REFERENCE * step), 0.0)?;
+            let exact =
+                self.collision_change(&case, reference.clone().set(trials.step, REFERENCE * step), 0.0)?;
             let overrides = way.choice(&case).overrides().set(trials.step, step);
             let mut own = CollisionChange::default();
             for phase in 0..PHASES {
                 let late = f64::from(phase) / f64::from(PHASES) * step;
-                let change = self.changed(&case, overrides.clone(), late)?;
+                let change = self.collision_change(&case, overrides.clone(), late)?;
                 for (sum, part) in own.impulse.iter_mut().zip(change.impulse) {
                     *sum += part / f64::from(PHASES);
                 }
@@ -73,13 +74,13 @@ impl SceneTrials<'_> {
     }
 
     /// Runs a collision delayed by a time.
-    fn changed(&self, case: &StudyCase, overrides: Overrides, late: f64) -> Option<CollisionChange> {
+    fn collision_change(&self, case: &StudyCase, overrides: Overrides, late: f64) -> Option<CollisionChange> {
         let prepared = case.prepared_with(&overrides).ok()?;
-        let prepared = delayed(&prepared, late);
+        let prepared = delayed_scene(&prepared, late);
         let mut simulation = prepared.start(StartPurpose::Run).ok()?;
         let end = Until::Time(case.duration()?);
         simulation.advance(&[end], self.trial.stop).ok()?;
-        let is_over = end.has_come(&simulation.clock()) && !self.trial.stop.load(Ordering::Relaxed);
+        let is_over = end.has_been_reached(&simulation.clock()) && !self.trial.stop.load(Ordering::Relaxed);
         // Particles that do not rotate have no rotational energy.
         let inertia =
             self.case.entry.trials.and_then(|trials| (trials.inertia)(&self.case.values)).unwrap_or(0.0);
@@ -104,19 +105,19 @@ impl SceneTrials<'_> {
 const LOOKED_AT: [usize; 2] = [64, 8];
 
 /// Speed at which neighbours approach (length/time): root mean square of the velocity of each particle relative to its nearest neighbour.
-fn approach(states: &[Particles], domain: &Domain) -> f64 {
+fn mean_approach_speed(states: &[Particles], domain: &Domain) -> f64 {
     let some = states.iter().step_by(states.len().div_ceil(LOOKED_AT[1]).max(1));
-    let all: Vec<f64> = some.flat_map(|state| relative(state, domain)).collect();
+    let all: Vec<f64> = some.flat_map(|state| squared_relative_speeds(state, domain)).collect();
     (all.iter().sum::<f64>() / all.len() as f64).sqrt()
 }
 
 /// Squared velocities of some particles relative to their nearest neighbour (length²/time²).
-fn relative(state: &Particles, domain: &Domain) -> Vec<f64> {
+fn squared_relative_speeds(state: &Particles, domain: &Domain) -> Vec<f64> {
     let grains = state.grains();
     let every = grains.len().div_ceil(LOOKED_AT[0]).max(1);
     let of = |own: &Particle| {
         let distance = |other: &Particle| {
-            let [x, y] = domain.displacement(own.place(), other.place());
+            let [x, y] = domain.displacement(own.planar_position(), other.planar_position());
             x.hypot(y) - other.radius
         };
         let others = grains.iter().filter(|other| other.id != own.id);
@@ -137,10 +138,10 @@ mod tests {
     fn the_speed_of_approach_is_that_of_neighbours() {
         let (prepared, _) = load("two-discs", &[], METHODS).unwrap();
         let fast = prepared.particles().clone();
-        assert!((approach(std::slice::from_ref(&fast), &prepared.domain) - 1.0).abs() < 1e-12);
+        assert!((mean_approach_speed(std::slice::from_ref(&fast), &prepared.domain) - 1.0).abs() < 1e-12);
         let mut slow = fast.clone();
         slow.all_mut()[0].velocity[0] = 0.5;
-        let both = approach(&[fast, slow], &prepared.domain);
+        let both = mean_approach_speed(&[fast, slow], &prepared.domain);
         assert!((both - f64::sqrt(0.625)).abs() < 1e-12, "{both}");
     }
 }

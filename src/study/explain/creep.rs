@@ -6,7 +6,7 @@ use super::mean::TrialMean;
 use crate::study::SettingChoice;
 use crate::study::observed::{BalanceIndices, StudyQuantities};
 use crate::study::trial::SampleSpan;
-use stripmine_physics::averages::of_independent;
+use stripmine_physics::averages::mean_of_independent;
 use stripmine_physics::method::ChoiceEffect;
 
 /// Share of the trial time for the drift of a configuration.
@@ -18,7 +18,7 @@ const KEPT: f64 = 1e-9;
 
 impl SceneTrials<'_> {
     /// For each integrator in use, returns its choice, its longest step (time), and the growth of its bias at that step.
-    pub(super) fn creeps(
+    pub(super) fn bias_growths(
         &self,
         ways: &[MeasuredConfiguration],
         mean: &TrialMean,
@@ -26,9 +26,9 @@ impl SceneTrials<'_> {
         let mut all: Vec<(SettingChoice, f64, f64)> = vec![];
         for way in ways.iter().filter(|way| way.dropped.is_none()) {
             let choice = self.choice(way);
-            let is_another = all.iter().all(|(other, ..)| !other.agrees(&choice, ChoiceEffect::Order));
+            let is_another = all.iter().all(|(other, ..)| !other.agrees_on(&choice, ChoiceEffect::Order));
             if let Some(step) = way.step.filter(|_| is_another) {
-                all.push((choice, step, self.creep(way, mean)));
+                all.push((choice, step, self.bias_growth(way, mean)));
             }
         }
         all
@@ -37,19 +37,19 @@ impl SceneTrials<'_> {
     /// Growth of a bias at the longest step (the quantity's unit, per unit of time); 0 where energy enters or leaves, or no drift is significant.
     ///
     /// Energies, and with them temperature and pressure, change by the same part; a mean over the run changes by half of that.
-    fn creep(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> f64 {
+    fn bias_growth(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> f64 {
         let keeps_shadow = || {
             let integrators = self.case.entry.trials?.shadow?.integrators;
             Some(integrators.contains(&self.choice(way).scheme()?.name))
         };
-        if keeps_shadow() != Some(false) || self.conservative(&mean.rows).is_none() {
+        if keeps_shadow() != Some(false) || self.conserved_balance(&mean.rows).is_none() {
             return 0.0;
         }
-        let own = |rows: &[Vec<f64>]| drift(&self.conservative(rows)?, rows);
+        let own = |rows: &[Vec<f64>]| drift(&self.conserved_balance(rows)?, rows);
         let relative = match way.label == mean.way {
             true => own(&mean.rows),
             false => self
-                .sampled_over(way, way.step, SampleSpan::Seconds(SHARE * self.seconds))
+                .sample_over(way, way.step, SampleSpan::Seconds(SHARE * self.seconds))
                 .ok()
                 .and_then(|sample| own(&sample.rows)),
         };
@@ -58,7 +58,7 @@ impl SceneTrials<'_> {
     }
 
     /// Returns the energy balance of a run without drive or dissipation: any imbalance is an error.
-    pub(super) fn conservative(&self, rows: &[Vec<f64>]) -> Option<BalanceIndices> {
+    pub(super) fn conserved_balance(&self, rows: &[Vec<f64>]) -> Option<BalanceIndices> {
         let balance =
             StudyQuantities::of(self.case.entry.trials?, self.case.entry.quantities).ok()?.balance?;
         let [first, last] = [rows.first()?, rows.last()?];
@@ -84,7 +84,7 @@ fn drift(balance: &BalanceIndices, rows: &[Vec<f64>]) -> Option<[f64; 2]> {
     let (early, late) = stretches.split_at(STRETCHES);
     let rates: Vec<f64> = early.iter().zip(late).map(|(a, b)| (b[1] - a[1]) / (b[0] - a[0])).collect();
     let energies = balance.energies(rows.last()?);
-    of_independent(&rates).map(|both| both.map(|value| value / energies))
+    mean_of_independent(&rates).map(|both| both.map(|value| value / energies))
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub(super) fn decisions(
             beside.push(Alternative {
                 name: other.clone(),
                 cost: own.map(|it| it.optimum.seconds / best.optimum.seconds),
-                why: why_not(way, own, best) + &with,
+                why: rejection_reason(way, own, best) + &with,
             });
         }
         let why = match beside.iter().filter_map(|it| it.cost).reduce(f64::min) {
@@ -135,7 +135,11 @@ fn step_decision(case: &StudyCase, best: &PlanCandidate<'_>, longest: f64, wante
     Decision { what: "dt".to_owned(), chosen: significant(step, 4), why, beside }
 }
 
-fn why_not(way: &MeasuredConfiguration, own: Option<&PlanCandidate<'_>>, best: &PlanCandidate<'_>) -> String {
+fn rejection_reason(
+    way: &MeasuredConfiguration,
+    own: Option<&PlanCandidate<'_>>,
+    best: &PlanCandidate<'_>,
+) -> String {
     if let Some(why) = &way.dropped {
         return why.clone();
     }
@@ -191,14 +195,14 @@ pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<Simpl
         };
         SimplerModelReport { name: it.name.clone(), change: it.difference, cost: it.cost, need, says }
     });
-    all.chain(digits(findings)).collect()
+    all.chain(precision_comparison(findings)).collect()
 }
 
 /// Usual precision and the lower one it is compared with.
 const DIGITS: [&str; 2] = ["f64", "f32"];
 
 /// Compares single with double precision by the cheapest configuration timed in both.
-fn digits(findings: &Findings) -> Option<SimplerModelReport> {
+fn precision_comparison(findings: &Findings) -> Option<SimplerModelReport> {
     let of = |way: &MeasuredConfiguration, axis: &str| {
         way.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone())
     };

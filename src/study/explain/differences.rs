@@ -1,9 +1,9 @@
 //! Bias of the steps of each integrator, from runs that start from the same states.
 
 use super::bias::{Bias, StepDifference};
-use super::findings::{HALVINGS, MeasuredConfiguration, SceneTrials, sort};
+use super::findings::{HALVINGS, MeasuredConfiguration, SceneTrials, sort_by_cost};
 use super::mean::{FEWEST, TrialMean};
-use crate::study::trial::{PairedConfigurations, PairedMeans, TOGETHER, pairs, part};
+use crate::study::trial::{PairedConfigurations, PairedMeans, TOGETHER, run_pairs, shown_part};
 use crate::study::{SettingChoice, first_line};
 use stripmine_physics::method::{ChoiceEffect, Prepared, StartPurpose};
 use stripmine_physics::scene::Overrides;
@@ -53,7 +53,7 @@ impl SceneTrials<'_> {
         if self.case.entry.trials.is_none() {
             return;
         }
-        let creeps = self.creeps(ways, mean);
+        let creeps = self.bias_growths(ways, mean);
         let all = self.shares[2] * self.seconds;
         // A few short pairs come first, and are repeated for as long as steps are shortened. None is shorter than a period.
         let mut seconds = if self.case.prepared.model.period().is_some() { all } else { SCOUT * all };
@@ -72,7 +72,7 @@ impl SceneTrials<'_> {
                     let Some(first) = at.checked_sub(1).map(|at| cases.firsts[at / STEPS.len()]) else {
                         break;
                     };
-                    self.shorten(ways, &ways[first].clone(), &why);
+                    self.halve_steps(ways, &ways[first].clone(), &why);
                 }
                 Ok(paired) => {
                     let warned = |first: usize| {
@@ -86,11 +86,11 @@ impl SceneTrials<'_> {
                             continue;
                         }
                         _ => {
-                            self.assign(ways, &cases, &paired, mean);
+                            self.assign_biases(ways, &cases, &paired, mean);
                             break;
                         }
                     };
-                    self.shorten(ways, &ways[cases.firsts[at]].clone(), &why);
+                    self.halve_steps(ways, &ways[cases.firsts[at]].clone(), &why);
                 }
             }
         }
@@ -103,24 +103,25 @@ impl SceneTrials<'_> {
                 Some(step) => way.bias = Some(Bias::unknown(step, self.power(&self.choice(way)))),
             }
         }
-        self.without_pairs(ways, mean);
+        self.add_unpaired_biases(ways, mean);
         for (choice, step, creep) in creeps {
-            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, ChoiceEffect::Order)) {
+            for way in ways.iter_mut().filter(|way| self.choice(way).agrees_on(&choice, ChoiceEffect::Order))
+            {
                 way.bias = way.bias.map(|bias| bias.with_creep(step, creep));
             }
         }
-        sort(ways);
+        sort_by_cost(ways);
     }
 
     /// Adds the biases from the shadow energy and from single collisions to those from paired runs.
-    fn without_pairs(&self, ways: &mut [MeasuredConfiguration], mean: &TrialMean) {
+    fn add_unpaired_biases(&self, ways: &mut [MeasuredConfiguration], mean: &TrialMean) {
         let of_mean =
-            ways.iter().find_map(|way| Some((self.choice(way), mean.step?, self.of_shadow(way, mean)?)));
+            ways.iter().find_map(|way| Some((self.choice(way), mean.step?, self.shadow_bias(way, mean)?)));
         let mut seen: Vec<(SettingChoice, Option<f64>)> = vec![];
         for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
             let Some(bias) = way.bias else { continue };
             let choice = self.choice(way);
-            let alike = |other: &SettingChoice| other.agrees(&choice, ChoiceEffect::Order);
+            let alike = |other: &SettingChoice| other.agrees_on(&choice, ChoiceEffect::Order);
             let bias = match &of_mean {
                 Some((of_mean, step, shadow)) if alike(of_mean) => bias.with_shadow(*step, *shadow),
                 _ => bias,
@@ -142,9 +143,9 @@ impl SceneTrials<'_> {
         for (at, way) in ways.iter().enumerate().filter(|(_, way)| way.dropped.is_none()) {
             let own = self.choice(way);
             let is_another =
-                firsts.iter().all(|&it| !self.choice(&ways[it]).agrees(&own, ChoiceEffect::Order));
+                firsts.iter().all(|&it| !self.choice(&ways[it]).agrees_on(&own, ChoiceEffect::Order));
             // The scene's own is always included: a plan states the error of the scene's own values.
-            let is_own = own.agrees(&self.case.own, ChoiceEffect::Order);
+            let is_own = own.agrees_on(&self.case.own, ChoiceEffect::Order);
             if is_another && (firsts.len() < most || is_own) {
                 firsts.push(at);
             }
@@ -200,16 +201,16 @@ impl SceneTrials<'_> {
             // All runs from one state see the same noise; each state has its own.
             let parts = (steps[0] / steps[case]) as u32;
             let prepared = prepared.model.with_noise(start as u64, parts).unwrap_or(prepared);
-            prepared.start(StartPurpose::Run).map_err(|failure| first_line(&failure.what()))
+            prepared.start(StartPurpose::Run).map_err(|failure| first_line(&failure.what_and_when()))
         };
         let compared = PairedConfigurations { steps, first, starts, begin: &begin };
         let observed = (self.case.entry.quantities, self.target.place);
-        pairs(&self.trial, &compared, observed, seconds)
+        run_pairs(&self.trial, &compared, observed, seconds)
             .map_err(|broken| PairingFailure::Broken(broken.at, broken.why))
     }
 
     /// Assigns the biases measured by paired runs.
-    fn assign(
+    fn assign_biases(
         &self,
         ways: &mut [MeasuredConfiguration],
         cases: &PairedCases,
@@ -223,7 +224,7 @@ impl SceneTrials<'_> {
         for (number, &first) in cases.firsts.iter().enumerate() {
             let choice = self.choice(&ways[first]);
             let power = self.power(&choice);
-            let is_of_reference = choice.agrees(&cases.reference, ChoiceEffect::Order);
+            let is_of_reference = choice.agrees_on(&cases.reference, ChoiceEffect::Order);
             let longest = paired.windows.iter().rev().find(|it| it.scatter <= TOGETHER);
             let shortest = SHORTER * longest.or(paired.windows.first()).map_or(0.0, |window| window.time);
             let bias = paired.windows.windows(2).filter(|both| both[1].time >= shortest).map(|both| {
@@ -235,11 +236,12 @@ impl SceneTrials<'_> {
                         StepDifference::of([&both[0], &both[1]], place, (memory, of_run), steps)
                     })
                     .collect();
-                Bias::of(&seen, power, both[1].time, part(both[1].time, memory), paired.starts)
+                Bias::of(&seen, power, both[1].time, shown_part(both[1].time, memory), paired.starts)
             });
             // Longer windows show more of the bias but scatter more: the one with the smallest error bar is used.
             let best = bias.filter(|it| it.below().is_finite()).min_by(|a, b| a.bar.total_cmp(&b.bar));
-            for way in ways.iter_mut().filter(|way| self.choice(way).agrees(&choice, ChoiceEffect::Order)) {
+            for way in ways.iter_mut().filter(|way| self.choice(way).agrees_on(&choice, ChoiceEffect::Order))
+            {
                 way.bias = best;
             }
         }

@@ -54,7 +54,7 @@ impl StepDeviations {
     /// Next step to try for an error. Steps are halved until the error is reached, or quartered where half is not expected to be enough.
     /// Then the interval between the longest step that reaches it and the one above is bisected. None where these are
     /// closer than [`CLOSE`], or where halving gains nothing.
-    pub(super) fn next(&self, error: f64) -> Option<f64> {
+    pub(super) fn next_step(&self, error: f64) -> Option<f64> {
         let shortest = self.tried.last()?;
         let Some(found) = self.step_for(error) else {
             // Only rounding is left, or chaos: two halvings in a row gain nothing.
@@ -102,13 +102,13 @@ mod tests {
     #[test]
     fn steps_are_halved_and_then_bisected() {
         let mut drift = tried(&[[0.8, f64::INFINITY], [0.4, 1e-5]]);
-        assert_eq!(drift.next(1e-6), Some(0.2));
+        assert_eq!(drift.next_step(1e-6), Some(0.2));
         drift.add(0.2, 1e-7);
-        assert_eq!(drift.next(1e-6), Some(0.2828));
+        assert_eq!(drift.next_step(1e-6), Some(0.2828));
         drift.add(0.2828, 2e-6);
-        assert_eq!(drift.next(1e-6), Some(0.2378));
+        assert_eq!(drift.next_step(1e-6), Some(0.2378));
         drift.add(0.2378, 9e-7);
-        assert_eq!((drift.next(1e-6), drift.step_for(1e-6).map(|it| it.step)), (None, Some(0.2378)));
+        assert_eq!((drift.next_step(1e-6), drift.step_for(1e-6).map(|it| it.step)), (None, Some(0.2378)));
     }
 
     /// By hand: from 16 at 0.4 to 1 at 0.2 it falls with the fourth power, and to 1/81 at a third of the step.
@@ -123,13 +123,13 @@ mod tests {
     #[test]
     fn steps_are_quartered_where_an_error_is_far() {
         let drift = tried(&[[0.4, 16.0], [0.2, 1.0]]);
-        assert_eq!([1e-2, 1e-4].map(|error| drift.next(error)), [Some(0.1), Some(0.05)]);
+        assert_eq!([1e-2, 1e-4].map(|error| drift.next_step(error)), [Some(0.1), Some(0.05)]);
     }
 
     #[test]
     fn steps_that_gain_nothing_end_the_search() {
         let stuck = [[1.6, 1.0], [0.8, 1e-6], [0.4, 1e-13], [0.2, 1e-13], [0.1, 2e-13]];
-        assert_eq!(tried(&stuck).next(1e-16), None);
-        assert_eq!(tried(&stuck[..3]).next(1e-16), Some(0.2));
+        assert_eq!(tried(&stuck).next_step(1e-16), None);
+        assert_eq!(tried(&stuck[..3]).next_step(1e-16), Some(0.2));
     }
 }

@@ -1,9 +1,9 @@
 //! Measures the deviation of conserved quantities over whole runs, step by step: long steps are cheap and come first.
 
 use super::ExplainError;
-use super::findings::{Findings, MeasuredConfiguration, MissingRun, NO_TIME, SceneTrials, sort};
+use super::findings::{Findings, MeasuredConfiguration, MissingRun, NO_TIME, SceneTrials, sort_by_cost};
 use super::plan::in_unit;
-use crate::results::side_by_side;
+use crate::results::run_in_parallel;
 use crate::study::rounded;
 use crate::study::trial::{MeanEstimate, SampleSpan, any_number};
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,10 @@ impl SceneTrials<'_> {
     /// long as one may be cheaper than the best found.
     ///
     /// A part of a run says nothing about the rest: bodies may have a close encounter late.
-    pub(super) fn drifts(&self, mut ways: Vec<MeasuredConfiguration>) -> Result<Findings, ExplainError> {
+    pub(super) fn measure_deviations(
+        &self,
+        mut ways: Vec<MeasuredConfiguration>,
+    ) -> Result<Findings, ExplainError> {
         let unknown = || ExplainError::NoMean {
             quantity: self.target.quantity.name,
             why: "the scene states no run time, or its method has no time step".to_owned(),
@@ -54,7 +57,7 @@ impl SceneTrials<'_> {
         let (mut start, mut row) = (0.0, 0.0);
         while let Some((at, step)) = self.next_run(&ways, [time, own]) {
             let key = format!("whole run|{}|{step}", ways[at].label);
-            let wanted = self.wanted_drift(&ways, own);
+            let wanted = self.target_deviation(&ways, own);
             let Ok(run) =
                 self.journal.recall(&key, |_| true, || self.whole_run(&ways[at], step, [time, wanted]))
             else {
@@ -88,7 +91,7 @@ impl SceneTrials<'_> {
                 run: self.run_as_it_stands(&ways),
             });
         }
-        sort(&mut ways);
+        sort_by_cost(&mut ways);
         self.unless_stopped(Findings {
             ways,
             mean: MeanEstimate::exactly(0.0),
@@ -134,12 +137,12 @@ impl SceneTrials<'_> {
         }
         let others: Vec<u64> = (1..STARTS).collect();
         let others: Result<Vec<DeviationRun>, MissingRun> =
-            side_by_side(&others, |&number| self.run_of_start(way, step, time, number));
+            run_in_parallel(&others, |&number| self.run_of_start(way, step, time, number));
         let Ok(others) = others else {
             return Ok(DeviationRun { farthest: MARGIN * first.farthest, ..first });
         };
         let all: Vec<f64> = others.iter().chain([&first]).map(|it| it.farthest).collect();
-        Ok(DeviationRun { farthest: farthest_of_another(&all), ..first })
+        Ok(DeviationRun { farthest: deviation_bound(&all), ..first })
     }
 
     /// Runs a numbered start; a run that fails has an infinite deviation.
@@ -174,13 +177,13 @@ impl SceneTrials<'_> {
             phases: sample.phases.clone(),
         };
         sample
-            .cut_off(time)
+            .early_end(time)
             .map_or(Ok(DeviationRun { farthest, costs: Some(costs) }), |why| Err(MissingRun(why)))
     }
 
     /// Returns index and step of the run that is expected to reach the error most cheaply; none where no time is left for it.
     fn next_run(&self, ways: &[MeasuredConfiguration], [time, own]: [f64; 2]) -> Option<(usize, f64)> {
-        let wanted = self.wanted_drift(ways, own);
+        let wanted = self.target_deviation(ways, own);
         let seconds = |way: &MeasuredConfiguration, step: f64| Some(way.cost? * way.step? / step * time);
         let reached = |way: &MeasuredConfiguration| seconds(way, way.drift.as_ref()?.step_for(wanted)?.step);
         let best = ways.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
@@ -188,7 +191,7 @@ impl SceneTrials<'_> {
         let is_dearer = |way: &MeasuredConfiguration, other: &MeasuredConfiguration| {
             let [own, others] = [way, other].map(|it| self.choice(it));
             let is_alike =
-                own.agrees(&others, ChoiceEffect::Order) && own.agrees(&others, ChoiceEffect::Digits);
+                own.agrees_on(&others, ChoiceEffect::Order) && own.agrees_on(&others, ChoiceEffect::Digits);
             let cost = |it: &MeasuredConfiguration| Some(it.cost? * it.step?);
             other.dropped.is_none() && is_alike && cost(other).zip(cost(way)).is_some_and(|(b, a)| b < a)
         };
@@ -202,8 +205,8 @@ impl SceneTrials<'_> {
             let own = self.choice(way);
             let leads = |other: &&MeasuredConfiguration| {
                 let other_choice = self.choice(other);
-                let is_finest = other_choice.agrees(&finest, ChoiceEffect::Digits);
-                is_tried(other) && is_finest && other_choice.agrees(&own, ChoiceEffect::Order)
+                let is_finest = other_choice.agrees_on(&finest, ChoiceEffect::Digits);
+                is_tried(other) && is_finest && other_choice.agrees_on(&own, ChoiceEffect::Order)
             };
             ways.iter().find(leads).filter(|leader| leader.label != way.label)
         };
@@ -212,7 +215,7 @@ impl SceneTrials<'_> {
             None => Some(rounded(LONGEST * own, 4)),
         };
         let runs = ways.iter().enumerate().filter(|(_, way)| is_tried(way)).filter_map(|(at, way)| {
-            let step = way.drift.as_ref().map_or_else(|| first(way), |drift| drift.next(wanted))?;
+            let step = way.drift.as_ref().map_or_else(|| first(way), |drift| drift.next_step(wanted))?;
             let enough = way.drift.as_ref().and_then(|drift| drift.expected_step(wanted));
             let [now, expected] = [step, enough.unwrap_or(step).min(step)].map(|step| seconds(way, step));
             Some((at, step, now?, expected?))
@@ -223,7 +226,7 @@ impl SceneTrials<'_> {
     }
 
     /// Target error of a run: the requested one, or the scene's own once it is known.
-    fn wanted_drift(&self, ways: &[MeasuredConfiguration], own: f64) -> f64 {
+    fn target_deviation(&self, ways: &[MeasuredConfiguration], own: f64) -> f64 {
         let of_own = || {
             let own_way = ways.iter().find(|way| way.label == self.case.own.label());
             own_way.and_then(|way| way.drift.as_ref()?.at(own))
@@ -234,7 +237,7 @@ impl SceneTrials<'_> {
 
 /// Returns the upper bound of the deviation of another start with 95 % confidence. Logarithms are assumed normally distributed: the next is
 /// below their mean plus t s √(1 + 1/n), with the one-sided t of Student's distribution.
-fn farthest_of_another(all: &[f64]) -> f64 {
+fn deviation_bound(all: &[f64]) -> f64 {
     let largest = all.iter().copied().fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {
         return largest;
@@ -256,10 +259,10 @@ mod tests {
     fn deviation_bound_follows_from_scatter() {
         let all = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0].map(libm::exp);
         let expected = 0.5 + 0.5477 * 2.015 * f64::sqrt(7.0 / 6.0);
-        assert!((libm::log(farthest_of_another(&all)) - expected).abs() < 1e-3);
-        assert_eq!(farthest_of_another(&[2.0; 6]), 2.0);
+        assert!((libm::log(deviation_bound(&all)) - expected).abs() < 1e-3);
+        assert_eq!(deviation_bound(&[2.0; 6]), 2.0);
         assert_eq!(
-            [farthest_of_another(&[0.0; 6]), farthest_of_another(&[1.0, f64::INFINITY])],
+            [deviation_bound(&[0.0; 6]), deviation_bound(&[1.0, f64::INFINITY])],
             [0.0, f64::INFINITY]
         );
     }

@@ -141,7 +141,7 @@ impl SceneTrials<'_> {
         })
     }
 
-    pub(super) fn sampled_over(
+    pub(super) fn sample_over(
         &self,
         way: &MeasuredConfiguration,
         step: Option<f64>,
@@ -153,7 +153,7 @@ impl SceneTrials<'_> {
         let prepared = self.prepared(&way.overrides, step)?;
         let span = span.within(self.left());
         let observed = (self.case.entry.quantities, self.target.place);
-        self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what()))
+        self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what_and_when()))
     }
 
     /// Returns a result, unless the user stopped the trials.
@@ -170,7 +170,7 @@ impl SceneTrials<'_> {
 }
 
 /// Sorts configurations by cost, dropped ones last.
-pub(super) fn sort(ways: &mut [MeasuredConfiguration]) {
+pub(super) fn sort_by_cost(ways: &mut [MeasuredConfiguration]) {
     let key = |way: &MeasuredConfiguration| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
     ways.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
 }

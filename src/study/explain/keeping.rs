@@ -18,7 +18,7 @@ use stripmine_physics::number::significant;
 ///
 /// # Errors
 /// [`Unreached`], where no configuration reaches the target.
-pub(crate) fn keeping(
+pub(crate) fn conserved_quantity_plan(
     case: &StudyCase,
     target: &PlanTarget,
     findings: &Findings,
@@ -31,7 +31,7 @@ pub(crate) fn keeping(
     let error = target.error.map(|width| in_unit(width, 1.0));
     let wanted = error.or(own_error).unwrap_or(WANTED);
     let costs = |way: &MeasuredConfiguration, step: f64| {
-        Some(findings.start + findings.of_rows(time) + way.cost? * way.step? / step * time)
+        Some(findings.start + findings.row_seconds(time) + way.cost? * way.step? / step * time)
     };
     let mut weighed: Vec<PlanCandidate<'_>> = usable()
         .filter_map(|way| {

@@ -3,7 +3,7 @@
 use super::PlanTarget;
 use super::alike::SceneFeatures;
 use super::findings::Findings;
-use super::seen::restore;
+use super::seen::restore_overrides;
 use crate::provenance::Provenance;
 use crate::results::{Journal, JournalError, JournalIdentity};
 use crate::study::StudyCase;
@@ -78,7 +78,7 @@ struct CachedFindings {
 }
 
 /// Abbreviates a commit to a unique prefix.
-fn short(commit: &str) -> &str {
+fn abbreviated_commit(commit: &str) -> &str {
     commit.get(..10).unwrap_or(commit)
 }
 
@@ -86,7 +86,7 @@ impl PlanCache {
     /// Opens the cache in the user's cache folder, for this processor, number of threads and version.
     pub(crate) fn here() -> PlanCache {
         PlanCache::within(
-            PLACES.iter().find_map(|(variable, below)| place(&std::env::var_os(variable)?, below)),
+            PLACES.iter().find_map(|(variable, below)| cache_folder(&std::env::var_os(variable)?, below)),
         )
     }
 
@@ -99,7 +99,7 @@ impl PlanCache {
             here.origin.version,
             // Between versions every commit is a different program.
             if here.origin.is_committed() {
-                format!(" of {}", short(&here.origin.commit))
+                format!(" of {}", abbreviated_commit(&here.origin.commit))
             } else {
                 String::new()
             }
@@ -145,7 +145,7 @@ impl PlanCache {
         if file.host != self.host || file.seconds < seconds {
             return Ok(None);
         }
-        restore(&mut file.findings.ways, case);
+        restore_overrides(&mut file.findings.ways, case);
         let taken = significant(file.taken, 2);
         let origin = format!("kept from {} ({taken} s of trials on {})", file.moment, file.host);
         Ok(Some((file.findings, origin)))
@@ -155,12 +155,15 @@ impl PlanCache {
     ///
     /// # Errors
     /// [`KeptError`] if the cache cannot be read.
-    pub(super) fn alike(&self, case: &StudyCase) -> Result<Option<(Findings, String)>, PlanCacheError> {
+    pub(super) fn nearest_findings(
+        &self,
+        case: &StudyCase,
+    ) -> Result<Option<(Findings, String)>, PlanCacheError> {
         let own = SceneFeatures::of(case);
         let near = |path: PathBuf| {
             let file: CachedFindings =
                 serde_json::from_slice(&regular_file::read(&path, LONGEST).ok()?).ok()?;
-            let apart = own.apart(&file.alike).filter(|_| file.host == self.host)?;
+            let apart = own.feature_distance(&file.alike).filter(|_| file.host == self.host)?;
             Some((apart, file))
         };
         let files = self.files()?.into_iter().filter_map(near);
@@ -181,7 +184,7 @@ impl PlanCache {
         target: &PlanTarget,
         seconds: f64,
     ) -> Result<Journal, PlanCacheError> {
-        let Some(folder) = self.begun(case, target, seconds) else { return Ok(Journal::none()) };
+        let Some(folder) = self.journal_folder(case, target, seconds) else { return Ok(Journal::none()) };
         fs::create_dir_all(&folder).map_err(FileError::at(&folder, "creating the folder"))?;
         let of = format!("trials of {}", case.arguments());
         let identity = JournalIdentity { of, digest: self.key(case, target) };
@@ -198,12 +201,12 @@ impl PlanCache {
         target: &PlanTarget,
         seconds: f64,
     ) -> Result<(), PlanCacheError> {
-        let folder = self.begun(case, target, seconds).filter(|folder| folder.is_dir());
+        let folder = self.journal_folder(case, target, seconds).filter(|folder| folder.is_dir());
         folder.map_or(Ok(()), |it| Ok(fs::remove_dir_all(&it).map_err(FileError::at(&it, "removing"))?))
     }
 
     /// Folder of the journal of trials of some seconds.
-    fn begun(&self, case: &StudyCase, target: &PlanTarget, seconds: f64) -> Option<PathBuf> {
+    fn journal_folder(&self, case: &StudyCase, target: &PlanTarget, seconds: f64) -> Option<PathBuf> {
         let name = format!("{}{BEGUN}{seconds}", self.key(case, target));
         Some(self.folder.as_ref()?.join(name))
     }
@@ -212,7 +215,7 @@ impl PlanCache {
     ///
     /// # Errors
     /// [`KeptError`] if it cannot be written.
-    pub(crate) fn keep(
+    pub(crate) fn store_findings(
         &self,
         case: &StudyCase,
         key: &str,
@@ -272,7 +275,7 @@ impl PlanCache {
 
 /// Returns the cache folder below the one that a variable names. None where that is empty or relative: the specification requires such values to be
 /// ignored.
-fn place(variable: &OsStr, below: &str) -> Option<PathBuf> {
+fn cache_folder(variable: &OsStr, below: &str) -> Option<PathBuf> {
     let folder = Path::new(variable);
     folder.is_absolute().then(|| folder.join(below).join("explain"))
 }
@@ -305,7 +308,7 @@ mod tests {
     /// The specification of XDG base directories: "all paths set in these environment variables must be absolute"; relative ones are ignored.
     #[test]
     fn relative_folders_are_ignored() {
-        let of = |variable: &str| place(OsStr::new(variable), "stripmine");
+        let of = |variable: &str| cache_folder(OsStr::new(variable), "stripmine");
         assert_eq!(of("/home/me/.cache"), Some(PathBuf::from("/home/me/.cache/stripmine/explain")));
         assert_eq!([of(""), of("cache"), of("./cache"), of("~/.cache")], [const { None }; 4]);
     }

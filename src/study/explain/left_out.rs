@@ -3,7 +3,7 @@
 use super::PlanTarget;
 use super::decisions::left_out;
 use super::recommended::SimplerModelReport;
-use super::seen::seen_with_twins;
+use super::seen::measure_with_simpler_models;
 use super::twins::has_simpler;
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::results::{FinishedItem, Progress, ProgressMeter};
@@ -79,7 +79,9 @@ pub(crate) fn compared(
         let quantity = target.quantity.name;
         let of = |why: String| UncomparedScene { scene, quantity, why };
         let trial = TrialControl { watch: &watch, stop: &stop };
-        match has_simpler(&case, quantity).then(|| seen_with_twins(&case, &target, seconds, trial)) {
+        match has_simpler(&case, quantity)
+            .then(|| measure_with_simpler_models(&case, &target, seconds, trial))
+        {
             None => without.push(of("it has no simpler model".to_owned())),
             Some(Ok(found)) => {
                 let mean = found.mean.mean;

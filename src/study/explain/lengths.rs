@@ -3,7 +3,7 @@
 use super::bias::BiasEstimate;
 use super::findings::{Findings, MeasuredConfiguration};
 use super::margin::PredictedBars;
-use super::optimum::{CostTerms, Optimum, SHORTEST, UNBIASED, optimum};
+use super::optimum::{CostTerms, Optimum, SHORTEST, UNBIASED, cheapest_step_and_time};
 use crate::study::StudyCase;
 use crate::study::trial::MeanEstimate;
 use stripmine_physics::averages::LIKELY_ENOUGH;
@@ -20,7 +20,7 @@ pub(super) struct PlanCandidate<'w> {
 }
 
 /// Cheapest step and time of a configuration. Without a time step its bias is zero; with a step and no measured bias it is skipped.
-pub(super) fn weigh(
+pub(super) fn cheapest_optimum(
     way: &MeasuredConfiguration,
     findings: &Findings,
     chance: &StatisticalError,
@@ -33,10 +33,15 @@ pub(super) fn weigh(
     };
     let time_for = |bar| chance.time_for(bar);
     match (way.step, way.bias) {
-        (None, _) => optimum(terms, (wanted, 1.0), |_, _| BiasEstimate::default(), time_for),
+        (None, _) => cheapest_step_and_time(terms, (wanted, 1.0), |_, _| BiasEstimate::default(), time_for),
         (Some(step), Some(bias)) => {
             let shortest = if bias.is_significant() || bias.creep > 0.0 { SHORTEST } else { UNBIASED };
-            optimum(terms, (wanted, shortest), |part, time| bias.over(part * step, time), time_for)
+            cheapest_step_and_time(
+                terms,
+                (wanted, shortest),
+                |part, time| bias.over(part * step, time),
+                time_for,
+            )
         }
         (Some(_), None) => None,
     }
@@ -53,7 +58,7 @@ pub(super) struct StatisticalError {
 
 impl Findings {
     /// Wall seconds of the rows of a run of some time.
-    pub(super) fn of_rows(&self, time: f64) -> f64 {
+    pub(super) fn row_seconds(&self, time: f64) -> f64 {
         self.row * self.mean.rows_in(time)
     }
 
@@ -99,19 +104,19 @@ pub(super) struct RunLength {
 ///
 /// # Errors
 /// Error of a single run, where more are needed and the scene has only one start.
-pub(super) fn length(
+pub(super) fn length_and_seeds(
     case: &StudyCase,
     best: &PlanCandidate<'_>,
     findings: &Findings,
 ) -> Result<RunLength, f64> {
     if let Some(time) = findings.whole {
-        return whole_runs(case, best, findings, time);
+        return length_of_whole_runs(case, best, findings, time);
     }
     Ok(length_of_stretches(case, best, findings))
 }
 
 /// As many whole runs as the error requires.
-fn whole_runs(
+fn length_of_whole_runs(
     case: &StudyCase,
     best: &PlanCandidate<'_>,
     findings: &Findings,
@@ -120,7 +125,7 @@ fn whole_runs(
     let seeds = (best.optimum.time / time).ceil().max(1.0);
     let chance = (findings.mean.square / time).sqrt();
     if seeds > 1.0 && case.prepared.seed.is_none() {
-        return Err(best.optimum.bias.with(chance));
+        return Err(best.optimum.bias.with_statistical_error(chance));
     }
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
     let threads = findings.threads as f64;
@@ -129,7 +134,7 @@ fn whole_runs(
     Ok(RunLength {
         time: seeds * time,
         seeds: seeds as u64,
-        seconds: rounds * (findings.start + findings.of_rows(time) + cost * one_thread * time),
+        seconds: rounds * (findings.start + findings.row_seconds(time) + cost * one_thread * time),
         why: format!("means of whole runs from different starts scatter by ± {}", significant(chance, 2)),
     })
 }
@@ -147,7 +152,7 @@ fn length_of_stretches(case: &StudyCase, best: &PlanCandidate<'_>, findings: &Fi
     };
     let time = best.optimum.time.max(transient).max(least);
     let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
-    let seconds = |time: f64, cost: f64| findings.start + findings.of_rows(time) + cost * time;
+    let seconds = |time: f64, cost: f64| findings.start + findings.row_seconds(time) + cost * time;
     let together = seconds(time + transient, cost);
     let threads = findings.threads as f64;
     if let Some(difference) = findings.starts_differ {

@@ -94,7 +94,7 @@ mod tests {
     use super::*;
     use crate::study::trial::RowPace;
     use std::f64::consts::PI;
-    use stripmine_physics::averages::{AverageOutcome, LIKELY_ENOUGH, estimated, student};
+    use stripmine_physics::averages::{AverageOutcome, LIKELY_ENOUGH, estimate_mean, student};
 
     /// Error bars of independent normal values with a variance of 1, computed as in averages: from 1.2 √n waves, at most 16, whose squares are
     /// independent. A plan is made from some values, and the error bar of another run of the planned length should be as small as requested. Each
@@ -154,7 +154,7 @@ mod tests {
                 };
                 let all: Vec<f64> = (0..(each * samples).ceil() as usize).map(&mut next).collect();
                 let seen: Vec<f64> = all.into_iter().skip(every - 1).step_by(every).collect();
-                match estimated(&seen, 0.0, every as f64) {
+                match estimate_mean(&seen, 0.0, every as f64) {
                     AverageOutcome::Mean(estimate) => {
                         let ends = (1..).map(|end| (end * every) as f64);
                         let series: Vec<[f64; 2]> = ends.zip(seen).map(|(end, value)| [end, value]).collect();

@@ -65,7 +65,7 @@ impl SceneTrials<'_> {
         // The scene is undefined beyond a requested window, and beyond its own end where longer runs fail at any step.
         let mut end = self.target.window.map(|[_, end]| end);
         loop {
-            super::findings::sort(ways);
+            super::findings::sort_by_cost(ways);
             let best = ways[0].clone();
             if best.dropped.is_some() {
                 let tried =
@@ -73,11 +73,11 @@ impl SceneTrials<'_> {
                 return Err(ExplainError::EveryWayFails(tried.collect()));
             }
             if !is_scout {
-                seconds = self.to_end(&best, seconds);
+                seconds = self.extended_to_end(&best, seconds);
             }
             let share = if is_scout { SCOUT * seconds } else { seconds };
             let span = end.map_or(SampleSpan::Seconds(share), |end| SampleSpan::Time(end, Some(share)));
-            let sample = match self.sampled_over(&best, best.step, span) {
+            let sample = match self.sample_over(&best, best.step, span) {
                 Ok(sample) => sample,
                 Err(_) if halvings == ALIKE && end.is_none() && self.goes_beyond(&best, share) => {
                     ways.clone_from_slice(&as_timed);
@@ -85,39 +85,39 @@ impl SceneTrials<'_> {
                     continue;
                 }
                 Err(failure) if halvings < HALVINGS && self.left() > kept_back => {
-                    self.shorten(ways, &best, &failure);
+                    self.halve_steps(ways, &best, &failure);
                     halvings += 1;
                     continue;
                 }
                 Err(failure) => return Err(self.no_mean(failure, enough)),
             };
             if !sample.warnings.is_empty() && halvings < HALVINGS && self.left() > kept_back {
-                let warned = format!("warning: {}", sample.warned());
+                let warned = format!("warning: {}", sample.warning_text());
                 match sample.warnings.iter().any(|warning| warning.check == ROUNDING) {
                     // A shorter step loses more of the motion.
-                    true => self.drop_digits(ways, &best, &warned),
-                    false => self.shorten(ways, &best, &warned),
+                    true => self.drop_precision(ways, &best, &warned),
+                    false => self.halve_steps(ways, &best, &warned),
                 }
                 halvings += 1;
                 continue;
             }
-            self.slow_down(ways, &best, &sample);
+            self.rescale_costs(ways, &best, &sample);
             if is_scout {
                 is_scout = false;
                 continue;
             }
-            let mut why = sample.without_mean();
-            if end.is_some() || changes(&sample) || is_hardly_known(&sample) {
-                enough = self.enough(&sample);
-                self.whole = self.whole_in(&sample, self.left());
+            let mut why = sample.missing_mean_reason();
+            if end.is_some() || is_changing_beyond_end(&sample) || is_hardly_known(&sample) {
+                enough = self.sufficient_trial_time(&sample);
+                self.whole = self.affordable_whole_time(&sample, self.left());
                 if let Some(time) = self.whole {
                     return self.over_whole_runs(&best, sample, time, seconds);
                 }
-                why.push_str(&self.too_dear(sample.cost));
+                why.push_str(&self.missing_whole_runs(sample.cost));
             } else if let Some(known) = sample.known() {
-                return Ok(found(&best, sample, known));
+                return Ok(trial_mean(&best, sample, known));
             } else {
-                enough = self.enough(&sample);
+                enough = self.sufficient_trial_time(&sample);
             }
             attempt += 1;
             let longer = (2.0 * seconds).min(self.left() - kept_back);
@@ -134,7 +134,7 @@ impl SceneTrials<'_> {
     }
 
     /// Seconds of a sample, extended to the end of the scene's own run where that is near.
-    fn to_end(&self, way: &MeasuredConfiguration, seconds: f64) -> f64 {
+    fn extended_to_end(&self, way: &MeasuredConfiguration, seconds: f64) -> f64 {
         let whole = self.case.duration().zip(way.cost).map(|(time, cost)| BEYOND * cost * time);
         whole.filter(|&whole| seconds < whole && whole <= LONGER * seconds).unwrap_or(seconds)
     }
@@ -155,14 +155,19 @@ impl SceneTrials<'_> {
         let runs = self.whole_runs(&way.overrides, way.step, (time, Some(&sample)), seconds);
         let known = runs.and_then(|runs| Ok((runs.known?, runs.cost)));
         let (known, cost) = known.map_err(|why| self.no_mean(why, None))?;
-        Ok(TrialMean { cost, ..found(way, sample, known) })
+        Ok(TrialMean { cost, ..trial_mean(way, sample, known) })
     }
 
     /// Halves the step of every configuration with the integrator of one that failed or raised a warning.
-    pub(super) fn shorten(&self, ways: &mut [MeasuredConfiguration], of: &MeasuredConfiguration, why: &str) {
+    pub(super) fn halve_steps(
+        &self,
+        ways: &mut [MeasuredConfiguration],
+        of: &MeasuredConfiguration,
+        why: &str,
+    ) {
         let choice = self.choice(of);
         let alike = |way: &&mut MeasuredConfiguration| {
-            way.dropped.is_none() && self.choice(way).agrees(&choice, ChoiceEffect::Order)
+            way.dropped.is_none() && self.choice(way).agrees_on(&choice, ChoiceEffect::Order)
         };
         for way in ways.iter_mut().filter(alike) {
             way.bound = Some(why.to_owned());
@@ -178,18 +183,18 @@ impl SceneTrials<'_> {
     }
 
     /// Drops every configuration with the precision and integrator of one in which particles stop moving.
-    fn drop_digits(&self, ways: &mut [MeasuredConfiguration], of: &MeasuredConfiguration, why: &str) {
+    fn drop_precision(&self, ways: &mut [MeasuredConfiguration], of: &MeasuredConfiguration, why: &str) {
         let choice = self.choice(of);
         for way in ways.iter_mut() {
             let own = self.choice(way);
-            if own.agrees(&choice, ChoiceEffect::Order) && own.agrees(&choice, ChoiceEffect::Digits) {
+            if own.agrees_on(&choice, ChoiceEffect::Order) && own.agrees_on(&choice, ChoiceEffect::Digits) {
                 way.dropped = Some(why.to_owned());
             }
         }
     }
 
     /// Rescales all costs by that of a run, which differs from the cost of its first stretches.
-    fn slow_down(
+    fn rescale_costs(
         &self,
         ways: &mut [MeasuredConfiguration],
         best: &MeasuredConfiguration,
@@ -218,7 +223,7 @@ impl SceneTrials<'_> {
     }
 
     /// Trial time that is long enough for a mean (s), estimated from a sample that was too short.
-    fn enough(&self, sample: &TrialSample) -> Option<f64> {
+    fn sufficient_trial_time(&self, sample: &TrialSample) -> Option<f64> {
         let time = match sample.outcome {
             AverageOutcome::TooShort { enough_at, .. } => enough_at,
             // The end of the change is unknown before the end of the scene's own run.
@@ -235,7 +240,7 @@ impl SceneTrials<'_> {
     }
 }
 
-fn found(way: &MeasuredConfiguration, sample: TrialSample, known: MeanEstimate) -> TrialMean {
+fn trial_mean(way: &MeasuredConfiguration, sample: TrialSample, known: MeanEstimate) -> TrialMean {
     let after = |states: &&(f64, Particles)| states.0 >= known.transient;
     // If hardly any state is after the transient, states before it are used too.
     let first = match sample.states.iter().filter(after).count() {
@@ -272,7 +277,7 @@ fn trials_for(seconds: f64) -> f64 {
 }
 
 /// True if a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean would differ.
-fn changes(sample: &TrialSample) -> bool {
+fn is_changing_beyond_end(sample: &TrialSample) -> bool {
     if !sample.comes_beyond_end {
         return false;
     }

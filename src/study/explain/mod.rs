@@ -41,7 +41,7 @@ mod words;
 pub(crate) use kept::{PlanCache, PlanCacheError};
 use plan::in_unit;
 pub(crate) use recommended::RunPlan;
-pub(crate) use tuned::tuned;
+pub(crate) use tuned::tuned_settings;
 pub(crate) use unreached::Unreached;
 pub(crate) use words::{page, seconds, with_unit};
 
@@ -49,7 +49,7 @@ use super::StudyCase;
 use crate::results::{Journal, JournalError};
 use crate::study::trial::TrialControl;
 use findings::Findings;
-use seen::{planned, seen};
+use seen::{measure_findings, plan_or_scene};
 use stripmine_physics::method::{ObservedQuantity, QuantityKind};
 use stripmine_physics::number::significant;
 use stripmine_physics::reported::{ErrorClass, Reported};
@@ -179,7 +179,7 @@ impl Reported for ExplainError {
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         match self {
             ExplainError::Kept(error) => Some(error),
             ExplainError::Journal(error) => Some(error),
@@ -259,9 +259,9 @@ pub(crate) fn explain(
                 notice(&error);
                 Journal::none()
             });
-            let findings = seen(case, target, seconds, trial, (&|_| {}, &journal))?;
+            let findings = measure_findings(case, target, seconds, trial, (&|_| {}, &journal))?;
             let taken = trial.watch.now() - begun;
-            let kept_now = kept.keep(case, &key, [seconds, taken], &findings);
+            let kept_now = kept.store_findings(case, &key, [seconds, taken], &findings);
             if let Err(error) = kept_now.and_then(|()| kept.close(case, target, seconds)) {
                 notice(&error);
             }
@@ -272,7 +272,7 @@ pub(crate) fn explain(
         return within_seconds(case, target, &findings, &origin, within);
     }
     let quantity = target.quantity.name;
-    planned(case, target, &findings, &origin)
+    plan_or_scene(case, target, &findings, &origin)
         .map_err(|it| ExplainError::OutOfReach { quantity, unreached: Unreached { trials: seconds, ..it } })
 }
 
@@ -299,7 +299,7 @@ fn within_seconds(
             limit: f64::INFINITY,
             ..target.clone()
         };
-        planned(case, &target, findings, origin)
+        plan_or_scene(case, &target, findings, origin)
     };
     let [mut low, mut high] = WEIGHED;
     let mut best = None;

@@ -43,7 +43,7 @@ pub(super) const UNBIASED: f64 = 0.25;
 ///
 /// A shorter step costs more per unit of time and has less bias, which leaves more of the error to statistics and so needs less time. A bias that
 /// grows with the time needs a longer run, which is found by iteration from below.
-pub(crate) fn optimum(
+pub(crate) fn cheapest_step_and_time(
     terms: CostTerms,
     (error, shortest): (f64, f64),
     bias: impl Fn(f64, f64) -> BiasEstimate,
@@ -53,7 +53,7 @@ pub(crate) fn optimum(
         let mut time = 0.0;
         for _ in 0..REPEATS {
             let bias = bias(part, time);
-            let needed = time_for(bias.leaves(error)?);
+            let needed = time_for(bias.error_left_to_statistics(error)?);
             if needed <= time * SETTLED {
                 return Some((bias, needed));
             }
@@ -77,7 +77,7 @@ mod tests {
     const TERMS: CostTerms = CostTerms { cost: 2.0, rows: 0.0, transient: 0.0 };
 
     fn best(terms: CostTerms, bias: impl Fn(f64) -> BiasEstimate) -> Option<Optimum> {
-        optimum(terms, (0.1, SHORTEST), |part, _| bias(part), |chance| 4.0 / (chance * chance))
+        cheapest_step_and_time(terms, (0.1, SHORTEST), |part, _| bias(part), |chance| 4.0 / (chance * chance))
     }
 
     /// By hand: with a bias of 2e-5 per unit of time, 4/(0.1 − 2e-5 t)² = t has its first root at t = 492.10; with 1e-4 it has none, as the
@@ -86,7 +86,7 @@ mod tests {
     fn growing_bias_needs_a_shorter_step() {
         let of = |creep: f64, shortest: f64| {
             let bias = |part: f64, time: f64| BiasEstimate::exactly(creep * part * time);
-            optimum(TERMS, (0.1, shortest), bias, |chance| 4.0 / (chance * chance))
+            cheapest_step_and_time(TERMS, (0.1, shortest), bias, |chance| 4.0 / (chance * chance))
         };
         let found = of(2e-5, 1.0).unwrap();
         assert!((found.time - 492.10).abs() < 0.01 && found.part == 1.0, "{found:?}");

@@ -4,7 +4,7 @@ use super::PlanTarget;
 use super::bias::BiasEstimate;
 use super::decisions::{decisions, left_out};
 use super::findings::{Findings, MeasuredConfiguration};
-use super::lengths::{PlanCandidate, StatisticalError, length, weigh};
+use super::lengths::{PlanCandidate, StatisticalError, cheapest_optimum, length_and_seeds};
 use super::optimum::SHORTEST;
 use super::recommended::{ExpectedError, LikelyRange, OwnResult, RunPlan};
 use super::unreached::Unreached;
@@ -41,7 +41,9 @@ pub(crate) fn plan(
         .ways
         .iter()
         .filter(usable)
-        .filter_map(|way| Some(PlanCandidate { way, optimum: weigh(way, findings, &chance, wanted)? }))
+        .filter_map(|way| {
+            Some(PlanCandidate { way, optimum: cheapest_optimum(way, findings, &chance, wanted)? })
+        })
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
@@ -52,11 +54,11 @@ pub(crate) fn plan(
         return Err(Unreached { known: mean.bar, ..Unreached::of(wanted, least) });
     };
     let unreached = |least: f64| Unreached { known: mean.bar, ..Unreached::of(wanted, least) };
-    let length = length(case, best, findings).map_err(unreached)?;
+    let length = length_and_seeds(case, best, findings).map_err(unreached)?;
     if length.seconds > target.limit {
         // The statistical error falls with the square root of the time.
         let left = target.limit * (length.time / length.seconds);
-        let least = best.optimum.bias.with(chance.over(left));
+        let least = best.optimum.bias.with_statistical_error(chance.over(left));
         return Err(Unreached { takes: Some([length.seconds, target.limit]), ..unreached(least) });
     }
     let step = best.way.step.map(|step| best.optimum.part * step);
@@ -128,7 +130,7 @@ pub(super) fn overrides(
     let time = time.or(case.duration());
     // The run length is given as the scene gives it: in steps or as a time.
     let Some(time) = time else { return overrides };
-    overrides = match (case.values.gives(&STEPS), step) {
+    overrides = match (case.values.is_given(&STEPS), step) {
         (true, Some(step)) => overrides.set(&STEPS, (time / step).ceil() as u64),
         _ => overrides.set(&TIME, no_shorter(time)),
     };
@@ -184,7 +186,7 @@ fn own(case: &StudyCase, way: &MeasuredConfiguration, findings: &Findings) -> Op
     };
     let left = time - findings.mean.transient;
     let every = own_rows(case, step);
-    let known = findings.mean.looked_at(every);
+    let known = findings.mean.with_row_spacing(every);
     let chance =
         if left > 0.0 { StatisticalError::of(&known, findings.whole).over(left) } else { f64::INFINITY };
     let seconds = findings.start + findings.row * (time / every) + cost * time;

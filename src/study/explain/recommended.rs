@@ -109,7 +109,7 @@ pub(crate) struct ExpectedError {
 
 impl ExpectedError {
     pub(super) fn of(bias: BiasEstimate, chance: f64) -> ExpectedError {
-        ExpectedError { bias, chance, most: bias.with(chance) }
+        ExpectedError { bias, chance, most: bias.with_statistical_error(chance) }
     }
 }
 

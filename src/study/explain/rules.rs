@@ -4,11 +4,11 @@ use super::as_it_stands::AS_IT_STANDS;
 use super::bias::{Bias, StepDifference};
 use super::findings::{Findings, MeasuredConfiguration};
 use super::plan::plan;
-use super::seen::{planned, seen};
+use super::seen::{measure_findings, plan_or_scene};
 use super::{ExplainError, PlanTarget, page};
 use crate::results::Journal;
 use crate::study::trial::MeanEstimate;
-use crate::study::trial::{PairedConfigurations, Stopwatch, TrialControl, pairs, part};
+use crate::study::trial::{PairedConfigurations, Stopwatch, TrialControl, run_pairs, shown_part};
 use crate::study::{SettingChoice, StudyCase};
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::method::{METHODS, StartPurpose};
@@ -86,7 +86,7 @@ fn plan_is_never_worse_than_the_scene() {
     let error = known.bars().over(time);
     for (cost, is_better) in [(3.0, false), (1.01, false), (0.5, true)] {
         let found = findings(&case, &[(&case.own, 1.0, None), (other, cost, biased(&case, 0.0, 0.0))], known);
-        let plan = planned(&case, &asking(&case, error), &found, "trials").unwrap();
+        let plan = plan_or_scene(&case, &asking(&case, error), &found, "trials").unwrap();
         let page = page(&plan);
         let expected = if is_better { other.label() } else { case.own.label() };
         assert_eq!(plan.way, expected, "{page}");
@@ -116,9 +116,9 @@ fn pairs_measure_heating_of_the_printed_scheme() {
         Ok(case.prepared_with(&more).unwrap().start(StartPurpose::Run).unwrap())
     };
     let compared = PairedConfigurations { steps: &[8, 1, 2], first: 2, starts: 24, begin: &begin };
-    let (watch, stop) = (Stopwatch::made(1.0), AtomicBool::new(false));
+    let (watch, stop) = (Stopwatch::with_synthetic_time(1.0), AtomicBool::new(false));
     let trial = TrialControl { watch: &watch, stop: &stop };
-    let paired = pairs(&trial, &compared, (case.entry.quantities, place), 0.1).unwrap();
+    let paired = run_pairs(&trial, &compared, (case.entry.quantities, place), 0.1).unwrap();
     assert!(paired.windows.len() > 3, "{:?}", paired.windows);
     // Temperatures decorrelate at the rate 2 γ/m.
     const MEMORY: f64 = 0.5;
@@ -126,7 +126,7 @@ fn pairs_measure_heating_of_the_printed_scheme() {
         let seen = |place: usize| {
             StepDifference::of([&both[0], &both[1]], place, (MEMORY, 1.0), (kinds[1 + place].1, 0.0))
         };
-        let shown = part(both[1].time, MEMORY);
+        let shown = shown_part(both[1].time, MEMORY);
         let bias = Bias::of(&[seen(0), seen(1)], 1.0, both[1].time, shown, paired.starts);
         let said = format!("{}: {bias:?}", both[1].time);
         assert!(bias.is_significant() && (bias.shift - 0.1099).abs() < bias.bar, "{said}");
@@ -147,8 +147,8 @@ fn trials_on_a_synthetic_clock_are_reproducible() {
         let target = PlanTarget::of(&case, Some(quantity), Some(Width::Percent(10.0))).unwrap();
         let stop = AtomicBool::new(false);
         let made = || {
-            let watch = Stopwatch::made(each);
-            let mut found = seen(
+            let watch = Stopwatch::with_synthetic_time(each);
+            let mut found = measure_findings(
                 &case,
                 &target,
                 6.0,

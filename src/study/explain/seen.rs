@@ -1,7 +1,7 @@
 //! Trials of a scene in order, and the plan that follows from them.
 
 use super::findings::{Findings, HALVINGS, MeasuredConfiguration, SHARES, SceneTrials};
-use super::keeping::keeping;
+use super::keeping::conserved_quantity_plan;
 use super::mean::TrialMean;
 use super::plan::plan;
 use super::recommended::RunPlan;
@@ -29,14 +29,14 @@ fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findin
     let journal = work.journal;
     let timed = || work.unless_stopped(work.timed_ways()?);
     let mut ways: Vec<MeasuredConfiguration> = journal.recall("costs", |_| true, timed)?;
-    restore(&mut ways, work.case);
+    restore_overrides(&mut ways, work.case);
     tell(work);
     if work.target.is_kept() {
-        return work.drifts(ways);
+        return work.measure_deviations(ways);
     }
     let known = journal.recall("means", |_| true, || work.compared(ways, &tell))?;
     let MeasuredBiases { mut ways, mut mean, whole } = known;
-    restore(&mut ways, work.case);
+    restore_overrides(&mut ways, work.case);
     work.whole = whole;
     tell(work);
     let best = &ways[0];
@@ -44,7 +44,7 @@ fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findin
     let starts_differ = work.starts_differ(best, &mut mean);
     // Transients are mostly detected too late, by a part of the run.
     mean.known.transient = mean.transients.iter().copied().fold(f64::INFINITY, f64::min);
-    let without = work.without(best, &mean);
+    let without = work.measure_simpler_models(best, &mean);
     work.unless_stopped(Findings {
         mean: mean.known,
         mean_way: mean.way,
@@ -93,9 +93,9 @@ impl SceneTrials<'_> {
 }
 
 /// Restores overrides, which are not cached, from settings and skins.
-pub(super) fn restore(ways: &mut [MeasuredConfiguration], case: &StudyCase) {
+pub(super) fn restore_overrides(ways: &mut [MeasuredConfiguration], case: &StudyCase) {
     for way in ways {
-        way.overrides = way.overrides_in(case);
+        way.overrides = way.configuration_overrides(case);
     }
 }
 
@@ -103,30 +103,30 @@ pub(super) fn restore(ways: &mut [MeasuredConfiguration], case: &StudyCase) {
 ///
 /// # Errors
 /// [`ExplainError`] if every trial fails, or the quantity has no mean.
-pub(crate) fn seen(
+pub(crate) fn measure_findings(
     case: &StudyCase,
     target: &PlanTarget,
     seconds: f64,
     trial: TrialControl<'_>,
     (progress, journal): (&dyn Fn(f64), &Journal),
 ) -> Result<Findings, ExplainError> {
-    seen_by(SHARES, case, target, seconds, trial, (progress, journal))
+    measure_with_shares(SHARES, case, target, seconds, trial, (progress, journal))
 }
 
 /// Measures a scene as [`seen`] does, with most of the time for its simpler models.
 ///
 /// # Errors
 /// As [`seen`].
-pub(super) fn seen_with_twins(
+pub(super) fn measure_with_simpler_models(
     case: &StudyCase,
     target: &PlanTarget,
     seconds: f64,
     trial: TrialControl<'_>,
 ) -> Result<Findings, ExplainError> {
-    seen_by(OF_TWINS, case, target, seconds, trial, (&|_| {}, &Journal::none()))
+    measure_with_shares(OF_TWINS, case, target, seconds, trial, (&|_| {}, &Journal::none()))
 }
 
-fn seen_by(
+fn measure_with_shares(
     shares: [f64; 5],
     case: &StudyCase,
     target: &PlanTarget,
@@ -144,14 +144,14 @@ fn seen_by(
 ///
 /// # Errors
 /// [`Unreached`], where no configuration reaches the target.
-pub(crate) fn planned(
+pub(crate) fn plan_or_scene(
     case: &StudyCase,
     target: &PlanTarget,
     findings: &Findings,
     origin: &str,
 ) -> Result<RunPlan, Unreached> {
     if target.is_kept() {
-        return Ok(keeping(case, target, findings, origin)?.or_as_it_stands(case, findings));
+        return Ok(conserved_quantity_plan(case, target, findings, origin)?.or_as_it_stands(case, findings));
     }
     let mut findings = findings.clone();
     let mut made = plan(case, target, &findings, origin)?;

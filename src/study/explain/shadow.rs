@@ -6,7 +6,7 @@
 
 use super::findings::{MeasuredConfiguration, SceneTrials};
 use super::mean::TrialMean;
-use stripmine_physics::averages::of_independent;
+use stripmine_physics::averages::mean_of_independent;
 use stripmine_physics::method::Trials;
 use stripmine_physics::method::observed::find;
 
@@ -18,7 +18,7 @@ const FEWEST: usize = 8;
 impl SceneTrials<'_> {
     /// Bias of the configuration and step that the mean was measured with, and half the width of its 95 % interval (the quantity's unit). None where
     /// the integrator conserves no shadow energy, or energy enters or leaves.
-    pub(super) fn of_shadow(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> Option<[f64; 2]> {
+    pub(super) fn shadow_bias(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> Option<[f64; 2]> {
         let trials = self.case.entry.trials?;
         let keeps = trials.shadow?.integrators.contains(&self.choice(way).scheme()?.name);
         (keeps && way.label == mean.way).then(|| self.covariance(trials, mean)).flatten()
@@ -29,7 +29,7 @@ impl SceneTrials<'_> {
         let temperature = find(quantities, trials.shadow?.temperature).ok()?;
         let rows: Vec<Vec<f64>> =
             mean.rows.iter().filter(|row| row[0] >= mean.known.transient).cloned().collect();
-        let balance = self.conservative(&rows)?;
+        let balance = self.conserved_balance(&rows)?;
         let energies: Vec<f64> = rows.iter().map(|row| balance.energy(row)).collect();
         let twice = rows.iter().map(|row| row[temperature]).sum::<f64>() / rows.len() as f64;
         let values: Vec<f64> = rows.iter().map(|row| row[self.target.place]).collect();
@@ -49,5 +49,5 @@ fn covariance(values: &[f64], others: &[f64]) -> Option<[f64; 2]> {
         let products = values.iter().zip(others).map(|(a, b)| (a - value) * (b - other)).sum::<f64>();
         products / (length - 1) as f64
     });
-    of_independent(&stretches.collect::<Vec<_>>())
+    mean_of_independent(&stretches.collect::<Vec<_>>())
 }

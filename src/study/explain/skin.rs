@@ -1,6 +1,6 @@
 //! Skin of neighbour lists, chosen by trials: no constant predicts how discs move.
 
-use super::findings::{MeasuredConfiguration, SceneTrials, sort};
+use super::findings::{MeasuredConfiguration, SceneTrials, sort_by_cost};
 use crate::study::StudyCase;
 use crate::study::rounded;
 use stripmine_physics::scene::Overrides;
@@ -41,7 +41,7 @@ impl SceneTrials<'_> {
             way.cost = way.cost.map(|cost| cost * least / of_own);
             way.skin = Some([own, skin, least / of_own]);
         }
-        sort(ways);
+        sort_by_cost(ways);
     }
 }
 
@@ -58,7 +58,7 @@ fn with_skin(overrides: Overrides, case: &StudyCase, skin: f64) -> Overrides {
 
 impl MeasuredConfiguration {
     /// Overrides that select this configuration.
-    pub(super) fn overrides_in(&self, case: &StudyCase) -> Overrides {
+    pub(super) fn configuration_overrides(&self, case: &StudyCase) -> Overrides {
         let overrides = self.choice(case).overrides();
         match self.skin {
             Some([_, skin, _]) => with_skin(overrides, case, skin),

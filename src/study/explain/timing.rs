@@ -1,7 +1,7 @@
 //! Cost of each configuration of a scene, at its longest usable step.
 
 use super::ExplainError;
-use super::findings::{HALVINGS, MeasuredConfiguration, NO_TIME, SceneTrials, sort};
+use super::findings::{HALVINGS, MeasuredConfiguration, NO_TIME, SceneTrials, sort_by_cost};
 use crate::study::{SettingChoice, first_line};
 use rayon::ThreadPoolBuilder;
 use stripmine_physics::method::{ChoiceEffect, StepLimit};
@@ -32,7 +32,7 @@ impl SceneTrials<'_> {
         let all = SettingChoice::all(self.case.entry.axes);
         let own = &self.case.own;
         let of_own_arithmetic = |choice: &&SettingChoice| {
-            choice.agrees(own, ChoiceEffect::Order) && choice.agrees(own, ChoiceEffect::Digits)
+            choice.agrees_on(own, ChoiceEffect::Order) && choice.agrees_on(own, ChoiceEffect::Digits)
         };
         let mut searches: Vec<&SettingChoice> = all.iter().filter(of_own_arithmetic).collect();
         // The scene's own is timed first, whatever it costs.
@@ -40,7 +40,7 @@ impl SceneTrials<'_> {
         let each = self.shares[0] * self.seconds / 2.0;
         let end = |share: f64| self.end.min(self.trial.watch.now() + OVERHEAD * share);
         let mut ways = self.timed(&searches, each, end(each));
-        give_up(&mut ways);
+        drop_expensive(&mut ways);
         let Some(best) = ways.iter().position(|way| way.cost.is_some()).map(|at| ways[at].label.clone())
         else {
             let tried = ways.into_iter().map(|way| (way.label, way.dropped.unwrap_or_default()));
@@ -49,10 +49,10 @@ impl SceneTrials<'_> {
         let best = all.iter().find(|choice| choice.label() == best).unwrap_or(own);
         let others: Vec<&SettingChoice> = all
             .iter()
-            .filter(|choice| choice.agrees(best, ChoiceEffect::Cost) && !of_own_arithmetic(choice))
+            .filter(|choice| choice.agrees_on(best, ChoiceEffect::Cost) && !of_own_arithmetic(choice))
             .collect();
         ways.extend(self.timed(&others, each, end(each)));
-        sort(&mut ways);
+        sort_by_cost(&mut ways);
         self.tune_skin(&mut ways, each);
         Ok(ways)
     }
@@ -67,7 +67,7 @@ impl SceneTrials<'_> {
         let of = |choice: &&SettingChoice| {
             if is_over() && **choice != self.case.own {
                 let dropped = Some(format!("not timed: {NO_TIME}"));
-                return MeasuredConfiguration { dropped, ..untimed(choice) };
+                return MeasuredConfiguration { dropped, ..untimed_configuration(choice) };
             }
             self.at_longest(choice, each)
         };
@@ -88,13 +88,13 @@ impl SceneTrials<'_> {
                 ways[*at].cost = times.iter().copied().reduce(f64::min);
             }
         }
-        sort(&mut ways);
+        sort_by_cost(&mut ways);
         ways
     }
 
     /// Times a configuration at the longest step that theory allows and at which it runs.
     fn at_longest(&self, choice: &SettingChoice, seconds: f64) -> MeasuredConfiguration {
-        let mut way = untimed(choice);
+        let mut way = untimed_configuration(choice);
         let own_step = self.case.step();
         let prepared = match self.prepared(&way.overrides, None) {
             Ok(prepared) => prepared,
@@ -110,7 +110,7 @@ impl SceneTrials<'_> {
         for _ in 0..HALVINGS {
             let tried = self.prepared(&way.overrides, step).map_err(|why| format!("refused: {why}"));
             let tried = tried.and_then(|prepared| {
-                self.trial.timed(&prepared, seconds).map_err(|failure| first_line(&failure.what()))
+                self.trial.timed(&prepared, seconds).map_err(|failure| first_line(&failure.what_and_when()))
             });
             match tried {
                 Ok(cost) => {
@@ -185,7 +185,7 @@ fn least(times: &[f64]) -> f64 {
 }
 
 /// A configuration without measurements.
-fn untimed(choice: &SettingChoice) -> MeasuredConfiguration {
+fn untimed_configuration(choice: &SettingChoice) -> MeasuredConfiguration {
     MeasuredConfiguration {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
@@ -202,7 +202,7 @@ fn untimed(choice: &SettingChoice) -> MeasuredConfiguration {
 }
 
 /// Drops configurations that cost more than `DEAR` times the cheapest: their results are the same.
-fn give_up(ways: &mut [MeasuredConfiguration]) {
+fn drop_expensive(ways: &mut [MeasuredConfiguration]) {
     let costs: Vec<f64> = ways.iter().filter_map(|way| way.cost).collect();
     let cheapest = least(&costs);
     for way in ways.iter_mut() {
@@ -210,7 +210,7 @@ fn give_up(ways: &mut [MeasuredConfiguration]) {
             way.dropped = Some(format!("costs {} times the cheapest", significant(cost / cheapest, 2)));
         }
     }
-    sort(ways);
+    sort_by_cost(ways);
 }
 
 /// Describes a limit in words.

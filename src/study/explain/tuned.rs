@@ -19,8 +19,11 @@ pub(crate) struct TunedSettings {
 ///
 /// # Errors
 /// [`KeptError`] if the cache cannot be read.
-pub(crate) fn tuned(case: &StudyCase, kept: &PlanCache) -> Result<Option<TunedSettings>, PlanCacheError> {
-    let Some((findings, origin)) = kept.alike(case)? else { return Ok(None) };
+pub(crate) fn tuned_settings(
+    case: &StudyCase,
+    kept: &PlanCache,
+) -> Result<Option<TunedSettings>, PlanCacheError> {
+    let Some((findings, origin)) = kept.nearest_findings(case)? else { return Ok(None) };
     let is_open = |key: &Key| case.values.choice(key).as_deref() == Some("auto");
     let holds =
         |key: &Key, value: &KeyValue| case.values.choice(key).is_none_or(|now| KeyValue::Word(now) == *value);
@@ -28,7 +31,7 @@ pub(crate) fn tuned(case: &StudyCase, kept: &PlanCache) -> Result<Option<TunedSe
     for way in findings.ways.iter().filter(|way| way.cost.is_some()) {
         let choice = way.choice(case);
         let is_own =
-            [ChoiceEffect::Order, ChoiceEffect::Digits].iter().all(|&it| choice.agrees(&case.own, it));
+            [ChoiceEffect::Order, ChoiceEffect::Digits].iter().all(|&it| choice.agrees_on(&case.own, it));
         let overrides = choice.overrides();
         if is_own && overrides.iter().all(|(key, value)| is_open(key) || holds(key, value)) {
             let open = overrides.iter().filter(|(key, _)| is_open(key));

@@ -29,7 +29,11 @@ pub(super) fn has_simpler(case: &StudyCase, quantity: &str) -> bool {
 
 impl SceneTrials<'_> {
     /// Measures every simpler model of the scene.
-    pub(super) fn without(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> Vec<SimplerModelResult> {
+    pub(super) fn measure_simpler_models(
+        &self,
+        way: &MeasuredConfiguration,
+        mean: &TrialMean,
+    ) -> Vec<SimplerModelResult> {
         let reference = &mean.known;
         let twins = simpler(self.case, self.target.quantity.name);
         let seconds = self.shares[3] * self.seconds / twins.len().max(1) as f64;
@@ -75,14 +79,14 @@ impl SceneTrials<'_> {
             .zip(of_scene)
             .map_or(1.0, |(own, of_scene)| own / of_scene);
         let twin = MeasuredConfiguration { overrides: more, ..way.clone() };
-        self.measured(&twin, way.step.map(|step| step * longer), seconds)
+        self.measure_mean(&twin, way.step.map(|step| step * longer), seconds)
     }
 
     /// Measures a model with another method, in its own cheapest configuration.
     fn rewritten(&self, scene: TranslatedScene, seconds: f64) -> Result<MeasuredMean, String> {
         let errors =
             |errors: SceneErrors| errors.0.first().map_or(String::new(), |error| first_line(&error.message));
-        let case = self.case.beside(&scene.text).map_err(errors)?;
+        let case = self.case.with_text_of(&scene.text).map_err(errors)?;
         let target = PlanTarget::of(&case, Some(scene.quantity), None).map_err(|error| error.to_string())?;
         if self.left() == 0.0 {
             return Err(NO_TIME.to_owned());
@@ -90,7 +94,7 @@ impl SceneTrials<'_> {
         let mut work = SceneTrials { case: &case, target: &target, seconds, ..*self };
         let ways = work.timed_ways().map_err(|error| error.to_string())?;
         work.seconds = self.seconds;
-        let measured = work.measured(&ways[0], ways[0].step, seconds)?;
+        let measured = work.measure_mean(&ways[0], ways[0].step, seconds)?;
         let in_unit = |known: MeanEstimate| MeanEstimate {
             mean: scene.unit * known.mean,
             bar: scene.unit * known.bar,

@@ -2,7 +2,7 @@
 //! starts give the statistical error of such a mean.
 
 use super::findings::{MeasuredConfiguration, MissingRun, NO_TIME, SceneTrials};
-use crate::results::side_by_side;
+use crate::results::run_in_parallel;
 use crate::study::first_line;
 use crate::study::state::displaced;
 use crate::study::trial::{MeanEstimate, SampleSpan, TrialSample, any_number};
@@ -41,15 +41,15 @@ impl SceneTrials<'_> {
     }
 
     /// Returns the time of a whole run if enough whole runs, besides the sample, fit into `seconds` at the sample's cost.
-    pub(super) fn whole_in(&self, sample: &TrialSample, seconds: f64) -> Option<f64> {
+    pub(super) fn affordable_whole_time(&self, sample: &TrialSample, seconds: f64) -> Option<f64> {
         self.whole_time().filter(|&time| {
-            let more = RUNS[0] - usize::from(sample.cut_off(time).is_none());
+            let more = RUNS[0] - usize::from(sample.early_end(time).is_none());
             more.div_ceil(rayon::current_num_threads()) as f64 * sample.cost * time <= seconds
         })
     }
 
     /// Describes the whole runs that did not fit into the trial time.
-    pub(super) fn too_dear(&self, cost: f64) -> String {
+    pub(super) fn missing_whole_runs(&self, cost: f64) -> String {
         self.whole_time().map_or(String::new(), |time| {
             format!(
                 "; a mean over the whole run needs {} runs of about {} s",
@@ -60,7 +60,7 @@ impl SceneTrials<'_> {
     }
 
     /// Measures the mean after the transient, or over whole runs, and the cost of a unit of time.
-    pub(super) fn measured(
+    pub(super) fn measure_mean(
         &self,
         way: &MeasuredConfiguration,
         step: Option<f64>,
@@ -68,8 +68,8 @@ impl SceneTrials<'_> {
     ) -> Result<MeasuredMean, String> {
         match self.whole {
             Some(time) => self.whole_runs(&way.overrides, step, (time, None), seconds),
-            None => self.sampled_over(way, step, SampleSpan::Seconds(seconds)).map(|sample| MeasuredMean {
-                known: sample.known().ok_or_else(|| sample.without_mean()),
+            None => self.sample_over(way, step, SampleSpan::Seconds(seconds)).map(|sample| MeasuredMean {
+                known: sample.known().ok_or_else(|| sample.missing_mean_reason()),
                 cost: sample.cost,
             }),
         }
@@ -90,7 +90,7 @@ impl SceneTrials<'_> {
         let from = self.target.window.map_or(0.0, |[from, _]| from);
         let whole = |sample: &TrialSample| {
             let run = WholeRunMean { mean: sample.mean_over([from, time]), cost: sample.cost };
-            sample.cut_off(time).map_or(Ok(run), Err)
+            sample.early_end(time).map_or(Ok(run), Err)
         };
         let one = |number: usize| {
             let key = format!("whole run|{}|{step:?}|{time}|{number}", overrides.texts().join(" "));
@@ -104,7 +104,8 @@ impl SceneTrials<'_> {
                         return Err(MissingRun(NO_TIME.to_owned()));
                     }
                     let sample = self.trial.sample(&prepared, observed, SampleSpan::Time(time, Some(left)));
-                    let sample = sample.map_err(|failure| MissingRun(first_line(&failure.what())))?;
+                    let sample =
+                        sample.map_err(|failure| MissingRun(first_line(&failure.what_and_when())))?;
                     whole(&sample).map_err(MissingRun)
                 },
             );
@@ -114,7 +115,7 @@ impl SceneTrials<'_> {
         let known_before = samples.len();
         loop {
             let next: Vec<usize> = (samples.len()..samples.len() + at_once).collect();
-            let more: Result<Vec<WholeRunMean>, String> = side_by_side(&next, |&number| one(number));
+            let more: Result<Vec<WholeRunMean>, String> = run_in_parallel(&next, |&number| one(number));
             match more {
                 Ok(more) => samples.extend(more),
                 Err(why) if samples.len() < RUNS[0] => return Err(why),
@@ -179,7 +180,7 @@ mod tests {
         let [_, largest] = before.radii().unwrap();
         for (number, start) in starts.iter().enumerate() {
             for (at, (own, now)) in before.all().iter().zip(start.all()).enumerate() {
-                let way = prepared.domain.displacement(now.place(), own.place());
+                let way = prepared.domain.displacement(now.planar_position(), own.planar_position());
                 let expected = if at < before.grain_count() { DISPLACED * largest } else { 0.0 };
                 assert!(
                     (way[0].hypot(way[1]) - expected).abs() < 1e-3 * DISPLACED * largest,

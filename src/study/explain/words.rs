@@ -2,7 +2,7 @@
 
 use super::recommended::{Alternative, Decision, ExpectedError, LikelyRange, RunPlan, SimplerModelReport};
 use stripmine_physics::memory::in_words;
-use stripmine_physics::number::{significant, with_bar};
+use stripmine_physics::number::{significant, with_error_bar};
 
 /// Formats a number with its unit.
 pub(crate) fn with_unit(value: &str, unit: &str) -> String {
@@ -40,9 +40,9 @@ fn answer(plan: &RunPlan) -> String {
 }
 
 fn expected(plan: &RunPlan) -> String {
-    let mean = plan
-        .mean
-        .map_or(String::new(), |[mean, bar]| format!(" {}", with_unit(&with_bar(mean, bar), plan.unit)));
+    let mean = plan.mean.map_or(String::new(), |[mean, bar]| {
+        format!(" {}", with_unit(&with_error_bar(mean, bar), plan.unit))
+    });
     let asked = match plan.error {
         Some(error) => format!(" (asked: {})", share(plan, error)),
         None => String::new(),
@@ -103,11 +103,11 @@ fn decision(it: &Decision) -> Vec<String> {
     if !it.why.is_empty() {
         lines[0].push_str(&format!(" – {}", it.why));
     }
-    lines.extend(it.beside.iter().map(beside));
+    lines.extend(it.beside.iter().map(alternative_line));
     lines
 }
 
-fn beside(it: &Alternative) -> String {
+fn alternative_line(it: &Alternative) -> String {
     let cost = it.cost.map_or(String::new(), |cost| format!(" {}×", significant(cost, 2)));
     format!("    {}{cost}: {}", it.name, it.why)
 }

@@ -37,14 +37,14 @@ impl AlarmRecord {
             |alarm: &Alarm| alarm.check == check && (alarm.finding == WarningLevel::WarnedByRun) == is_by_run;
         cells.fold(AlarmRecord::default(), |mut record, cell| {
             let Some(alarm) = cell.alarms.iter().find(|alarm| is_it(alarm)) else { return record };
-            let tells = alarm.finding.is_told();
+            let tells = alarm.finding.is_warning();
             if cell.is_right() {
                 record.right += usize::from(tells);
                 record.largest_right =
                     [record.largest_right, alarm.share].into_iter().flatten().reduce(f64::max);
-            } else if cell.class.is_unseen() && tells {
+            } else if cell.class.is_undetected_failure() && tells {
                 record.wrong += 1;
-                if !cell.alarms.iter().any(|other| other.finding.is_told() && !is_it(other)) {
+                if !cell.alarms.iter().any(|other| other.finding.is_warning() && !is_it(other)) {
                     record.alone += 1;
                     record.smallest_alone =
                         [record.smallest_alone, alarm.share].into_iter().flatten().reduce(f64::min);
@@ -58,7 +58,7 @@ impl AlarmRecord {
 /// A row for each limit and check of each map.
 pub(crate) fn alarms(maps: &[(String, StabilityMap)]) -> ResultFrame {
     let rows = maps.iter().flat_map(|(name, data)| {
-        let [right, wrong] = [MapPoint::is_right, |cell: &MapPoint| cell.class.is_unseen()]
+        let [right, wrong] = [MapPoint::is_right, |cell: &MapPoint| cell.class.is_undetected_failure()]
             .map(|belongs: fn(&MapPoint) -> bool| data.cells().filter(|cell| belongs(cell)).count());
         checks(data.cells()).into_iter().map(move |(check, is_by_run)| {
             let record = AlarmRecord::of(data.cells(), &check, is_by_run);

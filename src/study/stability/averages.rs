@@ -52,7 +52,7 @@ impl<'s> RunningMeans<'s> {
 }
 
 /// True if these can be means of a run of the scene: the right names, each with the right number of values, all finite.
-pub(crate) fn are_of(subject: &Subject, means: &ObservedMeans) -> bool {
+pub(crate) fn are_means_of(subject: &Subject, means: &ObservedMeans) -> bool {
     let expected: BTreeMap<&str, usize> =
         subject.watched().map(|watched| (watched.name, 1)).chain([(PROFILE, 2 * BINS)]).collect();
     means.iter().map(|(name, values)| (name.as_str(), values.len())).eq(expected)

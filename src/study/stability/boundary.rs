@@ -22,7 +22,7 @@ impl StepBoundary {
 
 /// Finds the boundary between rising steps to within a part `tolerance` of the step. The search begins at index `guess`, the expected first
 /// failing step.
-pub(crate) fn edge<E>(
+pub(crate) fn find_boundary<E>(
     steps: &[f64],
     guess: usize,
     tolerance: f64,
@@ -62,8 +62,9 @@ mod tests {
     fn boundary_is_found_from_every_guess() {
         let steps = [1.0, 2.0, 4.0, 8.0];
         for guess in 0..6 {
-            let found =
-                |limit: f64| edge(&steps, guess, 0.01, |step| Ok::<_, Infallible>(step <= limit)).unwrap();
+            let found = |limit: f64| {
+                find_boundary(&steps, guess, 0.01, |step| Ok::<_, Infallible>(step <= limit)).unwrap()
+            };
             assert_eq!((found(0.5), found(8.0)), (StepBoundary::Below, StepBoundary::Above));
             for limit in [1.0, 3.3, 7.9] {
                 let StepBoundary::Between([low, high]) = found(limit) else { panic!("{guess} {limit}") };

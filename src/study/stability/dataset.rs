@@ -119,12 +119,12 @@ impl StabilityMap {
     }
 
     /// Counts the runs that belong to some classes.
-    pub(crate) fn said(&self, belongs: impl Fn(&MapPoint) -> bool) -> WarningCounts {
+    pub(crate) fn warning_counts(&self, belongs: impl Fn(&MapPoint) -> bool) -> WarningCounts {
         self.cells().filter(|cell| belongs(cell)).fold(WarningCounts::default(), |mut said, cell| {
             said.all += 1;
             let is_warned = !cell.warned_by_run().is_empty();
             said.warned_by_run += usize::from(is_warned);
-            match cell.foreseen() {
+            match cell.worst_before_run() {
                 WarningLevel::Refused => said.refused += 1,
                 WarningLevel::Warned => said.warned_before += 1,
                 _ => said.unsaid += usize::from(!is_warned),

@@ -78,30 +78,36 @@ fn of_maps(maps: &Maps) -> ResultFrame {
         .count("seeds", |(_, data)| data.seeds.len())
         .number("tolerance of an edge", 3, |(_, data)| data.tolerance)
         .count("places", count(|data| data.cells().count()))
-        .count("right", count(|data| data.said(outcome::MapPoint::is_right).all))
-        .count("right and refused", count(|data| data.said(outcome::MapPoint::is_right).refused))
+        .count("right", count(|data| data.warning_counts(outcome::MapPoint::is_right).all))
+        .count("right and refused", count(|data| data.warning_counts(outcome::MapPoint::is_right).refused))
         .count(
             "right and warned of",
             count(|data| {
-                let said = data.said(outcome::MapPoint::is_right);
+                let said = data.warning_counts(outcome::MapPoint::is_right);
                 said.all - said.unsaid - said.refused
             }),
         )
         .count(
             "undecided",
-            count(|data| data.said(|cell| cell.class == RunClass::Works && !cell.is_decided).all),
+            count(|data| data.warning_counts(|cell| cell.class == RunClass::Works && !cell.is_decided).all),
         )
-        .count("wrong", count(|data| data.said(|cell| cell.class.is_unseen()).all))
-        .count("wrong and refused", count(|data| data.said(|cell| cell.class.is_unseen()).refused))
+        .count("wrong", count(|data| data.warning_counts(|cell| cell.class.is_undetected_failure()).all))
+        .count(
+            "wrong and refused",
+            count(|data| data.warning_counts(|cell| cell.class.is_undetected_failure()).refused),
+        )
         .count(
             "wrong and warned of before",
-            count(|data| data.said(|cell| cell.class.is_unseen()).warned_before),
+            count(|data| data.warning_counts(|cell| cell.class.is_undetected_failure()).warned_before),
         )
         .count(
             "wrong and caught by the run",
-            count(|data| data.said(|cell| cell.class.is_unseen()).warned_by_run),
+            count(|data| data.warning_counts(|cell| cell.class.is_undetected_failure()).warned_by_run),
         )
-        .count("wrong and silent", count(|data| data.said(|cell| cell.class.is_unseen()).unsaid))
+        .count(
+            "wrong and silent",
+            count(|data| data.warning_counts(|cell| cell.class.is_undetected_failure()).unsaid),
+        )
         .number("edge over theory", 3, theory(0))
         .number("edge over theory, lowest", 3, theory(1))
         .number("edge over theory, highest", 3, theory(2))
@@ -156,7 +162,7 @@ fn schemes(maps: &Maps) -> ResultFrame {
 
 fn said(maps: &Maps) -> ResultFrame {
     let classes = maps.iter().flat_map(|(name, data)| {
-        RunClass::BEGUN.map(|class| (name, class, data.said(|cell| cell.class == class)))
+        RunClass::BEGUN.map(|class| (name, class, data.warning_counts(|cell| cell.class == class)))
     });
     FrameBuilder::of(classes.filter(|(.., said)| said.all > 0))
         .text("scene", |(name, ..)| *name)
@@ -189,7 +195,7 @@ fn cells(maps: &Maps) -> ResultFrame {
         .number("step", 6, |(.., step, _)| **step)
         .text("class", |(.., cell)| cell.class.name())
         .count("decided", |(.., cell)| u64::from(cell.is_decided))
-        .text("foreseen", |(.., cell)| foreseen(cell.foreseen()))
+        .text("foreseen", |(.., cell)| foreseen(cell.worst_before_run()))
         .text("warned_by_run", |(.., cell)| cell.warned_by_run().join(", "))
         .text("findings", |(.., cell)| cell.alarms.iter().map(Alarm::words).collect::<Vec<_>>().join(", "))
         .text("what", |(.., cell)| &cell.what)

@@ -25,7 +25,7 @@ use super::choice::SettingChoice;
 use super::runs::StudyRuns;
 use super::trial::{RunFailure, TrialControl};
 use super::{StudyError, Subject};
-use crate::results::{Journal, Progress, ProgressMeter, side_by_side};
+use crate::results::{Journal, Progress, ProgressMeter, run_in_parallel};
 use crate::statistics::median;
 use extent::MapCosts;
 use stripmine_physics::method::{ChoiceEffect, Parameter, StartPurpose};
@@ -125,7 +125,7 @@ pub(crate) fn stability(
     let meter = ProgressMeter::new(effort.budget, progress);
     let runs = StudyRuns { subject, trial, journal, meter: &meter };
     let schemes = schemes(subject);
-    let [each, start] = journal.once(|| probe(&runs, parameter, range))?;
+    let [each, start] = journal.run_on_one(|| probe(&runs, parameter, range))?;
     let (asked, scene) = ((effort.size, effort.seeds), subject.steps as f64);
     let extent = MapCosts { each, start, schemes: schemes.len() }.extent(effort.budget, asked, scene)?;
     meter.expect(extent.seconds);
@@ -137,8 +137,8 @@ pub(crate) fn stability(
     let survey = Survey { runs, parameter, steps: &steps, duration, each, seeds: &seeds, tolerance };
     let own = |value: f64| MapVariant { choice: &subject.own, value: Some(value) };
     let column = |&value: &f64| -> Result<(Vec<MapPoint>, Boundary, Option<String>), StudyError> {
-        let known = survey.known(Some(value))?;
-        let cells = side_by_side(&steps, |&step| survey.cell(own(value), &known, step, 1))?;
+        let known = survey.measure_reference(Some(value))?;
+        let cells = run_in_parallel(&steps, |&step| survey.cell(own(value), &known, step, 1))?;
         let first = |is_so: fn(RunClass) -> bool| {
             cells.iter().position(|cell| !is_so(cell.class)).unwrap_or(cells.len())
         };
@@ -146,7 +146,7 @@ pub(crate) fn stability(
         let boundary = survey.boundary(own(value), &known, guesses)?;
         Ok((cells, boundary, known.err()))
     };
-    let columns: Vec<_> = journal.over(&values, column)?;
+    let columns: Vec<_> = journal.run_all(&values, column)?;
     let (mut map, mut boundaries, mut unjudged) = (vec![], vec![], vec![]);
     for (&value, (cells, boundary, why)) in values.iter().zip(columns) {
         map.push(cells);
@@ -156,8 +156,8 @@ pub(crate) fn stability(
     if map.iter().flatten().all(|cell| cell.class != RunClass::Works) {
         return Err(StudyError::EveryRunFails { tried: tried(&values, &steps, &map, parameter) });
     }
-    let known = journal.once(|| survey.known(None))?;
-    let schemes = journal.over(&schemes, |scheme| survey.scheme(scheme, &known))?;
+    let known = journal.run_on_one(|| survey.measure_reference(None))?;
+    let schemes = journal.run_all(&schemes, |scheme| survey.scheme(scheme, &known))?;
     let is_inside = |value: f64| range[0] <= value && value <= range[1];
     Ok(StabilityMap {
         method: subject.entry.vocabulary.keys.method,

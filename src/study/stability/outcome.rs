@@ -55,7 +55,7 @@ impl RunClass {
     }
 
     /// True if the run finishes and is wrong: a user may mistake it for a result.
-    pub(crate) const fn is_unseen(self) -> bool {
+    pub(crate) const fn is_undetected_failure(self) -> bool {
         self.ends() && !matches!(self, RunClass::Works)
     }
 }
@@ -95,7 +95,7 @@ pub(crate) struct MapPoint {
 
 impl MapPoint {
     /// Most severe warning before the run.
-    pub(crate) fn foreseen(&self) -> WarningLevel {
+    pub(crate) fn worst_before_run(&self) -> WarningLevel {
         let before =
             self.alarms.iter().map(|alarm| alarm.finding).filter(|it| *it != WarningLevel::WarnedByRun);
         before.max().unwrap_or(WarningLevel::Within)

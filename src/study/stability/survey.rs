@@ -1,17 +1,17 @@
 //! Runs of a stability map.
 
 use super::averages::{self, LOOKS, ObservedMeans, RunningMeans};
-use super::boundary::{StepBoundary, edge};
+use super::boundary::{StepBoundary, find_boundary};
 use super::dataset::{Boundary, SchemeLimit};
 use super::outcome::{JudgedRun, MapPoint, RunClass, WholeTrial};
 use super::reference::{ExpectedMeans, SEEDS};
-use crate::results::side_by_side;
+use crate::results::run_in_parallel;
 use crate::statistics::RunSpread;
 use crate::study::StudyError;
 use crate::study::alarm::Alarm;
 use crate::study::choice::SettingChoice;
 use crate::study::runs::StudyRuns;
-use crate::study::state::delayed;
+use crate::study::state::delayed_scene;
 use crate::study::trial::{RunFailure, RunSampling};
 use stripmine_physics::method::{
     ChoiceEffect, LimitConsequence, Parameter, Prepared, Simulation, StartPurpose, StepLimit,
@@ -49,14 +49,14 @@ pub(crate) type ReferenceResult = Result<ExpectedMeans, String>;
 
 impl Survey<'_> {
     /// Measures the reference of a value: the most accurate configuration at the smallest step, over seeds.
-    pub(crate) fn known(&self, value: Option<f64>) -> Result<ReferenceResult, StudyError> {
+    pub(crate) fn measure_reference(&self, value: Option<f64>) -> Result<ReferenceResult, StudyError> {
         let subject = self.runs.subject;
         let mut why = String::new();
         for number in 0..subject.trials.references.len() {
             let choice = subject.reference(number);
             let seeds: Vec<_> = (1..=SEEDS).collect();
             let run = |&seed: &_| self.run(MapVariant { choice: &choice, value }, self.steps[0], seed);
-            let runs: Vec<JudgedRun> = side_by_side(&seeds, run)?;
+            let runs: Vec<JudgedRun> = run_in_parallel(&seeds, run)?;
             let whole: Result<Vec<WholeTrial>, RunFailure> = runs.into_iter().map(|ran| ran.end).collect();
             match whole {
                 Ok(whole) => {
@@ -100,7 +100,7 @@ impl Survey<'_> {
     ) -> Result<Boundary, StudyError> {
         let edges = |guess: usize, is_so: fn(RunClass) -> bool| -> Result<Vec<StepBoundary>, StudyError> {
             let of = |&seed: &u64| {
-                edge(self.steps, guess, self.tolerance, |step| {
+                find_boundary(self.steps, guess, self.tolerance, |step| {
                     self.cell(variant, known, step, seed).map(|cell| is_so(cell.class))
                 })
             };
@@ -154,7 +154,7 @@ impl Survey<'_> {
         let scene = subject.prepared_at_any_step(variant.choice, step, &overrides)?;
         // A start without a seed is varied by the phase of the step at which contacts begin.
         let phase = (seed - 1) as f64 / (SEEDS as f64 + 0.5);
-        Ok(delayed(&scene, phase * step))
+        Ok(delayed_scene(&scene, phase * step))
     }
 
     fn run(&self, variant: MapVariant<'_>, step: f64, seed: u64) -> Result<JudgedRun, StudyError> {
@@ -162,7 +162,7 @@ impl Survey<'_> {
         let key = format!("run|{}|{value}|{step:?}|{seed}", variant.choice.label());
         let fits = |ran: &JudgedRun| {
             let is_ours = |whole: &WholeTrial| {
-                averages::are_of(self.runs.subject, &whole.means) && whole.speed.is_finite()
+                averages::are_means_of(self.runs.subject, &whole.means) && whole.speed.is_finite()
             };
             ran.end.as_ref().map_or(true, is_ours)
         };

@@ -23,7 +23,7 @@ fn mapped(
     stop: &AtomicBool,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Value, StudyError> {
-    let watch = Stopwatch::made(nanoseconds);
+    let watch = Stopwatch::with_synthetic_time(nanoseconds);
     let over = VariedRange::of(subject, None, None)?;
     let trial = TrialControl { watch: &watch, stop };
     let map = stability(subject, over, &EFFORT, trial, journal, progress)?;

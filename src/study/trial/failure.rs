@@ -68,7 +68,7 @@ impl From<PhysicsFailure> for RunFailure {
             FailureKind::LONG_STEP => FailureCause::MaskOutrun,
             _ => FailureCause::Other,
         };
-        RunFailure { cause, why: first_line(&failure.what()) }
+        RunFailure { cause, why: first_line(&failure.what_and_when()) }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::any_number;
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::{Estimate, foreseeing, of_independent};
+use stripmine_physics::averages::{Estimate, mean_of_independent, predictive_half_width};
 
 /// Fewest rows of a run of known time.
 pub(crate) const ROWS: f64 = 250.0;
@@ -76,7 +76,7 @@ impl MeanEstimate {
     /// Estimates the mean from the means of whole runs of a time (time); none from fewer than two.
     pub(crate) fn of_whole_runs(means: &[f64], time: f64) -> Option<MeanEstimate> {
         let count = means.len() as f64;
-        let [mean, bar] = of_independent(means)?;
+        let [mean, bar] = mean_of_independent(means)?;
         let (span, waves) = (count * time, count - 1.0);
         Some(MeanEstimate {
             bar,
@@ -92,7 +92,7 @@ impl MeanEstimate {
     pub(crate) fn of(it: Estimate, values: &[[f64; 2]], pace: Option<RowPace>) -> MeanEstimate {
         let kept: Vec<f64> =
             values.iter().filter(|[time, _]| *time > it.equilibrated_at).map(|[_, value]| *value).collect();
-        let [bar, freedoms] = foreseeing(&kept).unwrap_or([it.bar, it.freedoms]);
+        let [bar, freedoms] = predictive_half_width(&kept).unwrap_or([it.bar, it.freedoms]);
         let all = MeanEstimate {
             mean: it.mean,
             bar: it.bar,
@@ -116,7 +116,9 @@ impl MeanEstimate {
         let mut best: Option<(f64, MeanEstimate)> = None;
         for by in EVERY {
             let seen: Vec<f64> = values.iter().skip(by - 1).step_by(by).copied().collect();
-            let Some([bar, freedoms]) = foreseeing(&seen).filter(|_| by == 1 || seen.len() >= FEWEST) else {
+            let Some([bar, freedoms]) =
+                predictive_half_width(&seen).filter(|_| by == 1 || seen.len() >= FEWEST)
+            else {
                 continue;
             };
             let every = by as f64 * spacing;
@@ -137,7 +139,7 @@ impl MeanEstimate {
     /// The variance of a mean over rows Δ apart is that of values with exponentially decaying correlation, v Δ coth(v Δ/s). Here v is the variance of
     /// a single value and s that of close rows in a unit of time: the limits are s for close rows, and v Δ for independent rows.
     #[must_use]
-    pub(crate) fn looked_at(&self, every: f64) -> MeanEstimate {
+    pub(crate) fn with_row_spacing(&self, every: f64) -> MeanEstimate {
         if self.single == 0.0 || every <= self.every {
             return *self;
         }
@@ -167,7 +169,7 @@ impl MeanEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_physics::averages::{AverageOutcome, estimated};
+    use stripmine_physics::averages::{AverageOutcome, estimate_mean};
 
     const FREE: RowPace = RowPace { cost: 1.0, row: 0.0 };
 
@@ -184,7 +186,7 @@ mod tests {
         };
         let series: Vec<[f64; 2]> = (1..=8000).map(&mut next).collect();
         let values: Vec<f64> = series.iter().map(|it| it[1]).collect();
-        match estimated(&values, 0.0, 1.0) {
+        match estimate_mean(&values, 0.0, 1.0) {
             AverageOutcome::Mean(estimate) => MeanEstimate::of(estimate, &series, pace),
             outcome => unreachable!("{outcome:?}"),
         }
@@ -209,13 +211,13 @@ mod tests {
         let means = known(0.0, None);
         assert!(means.every == 0.0 && near(means.square, 4.0) && means.single == 0.0, "{means:?}");
         // A wider spacing follows the same formula.
-        let later = known(0.5, Some(FREE)).looked_at(4.0);
+        let later = known(0.5, Some(FREE)).with_row_spacing(4.0);
         assert!(
             near(later.square, 16.0 * (1.0 + 0.0625) / (1.0 - 0.0625)) && later.every == 4.0,
             "{later:?}"
         );
-        assert!(near(quick.looked_at(10.0).square, 40.0));
-        assert_eq!(means.looked_at(100.0).square, means.square);
+        assert!(near(quick.with_row_spacing(10.0).square, 40.0));
+        assert_eq!(means.with_row_spacing(100.0).square, means.square);
         assert_eq!(
             [quick.rows_in(1000.0), quick.rows_in(10.0), means.rows_in(1000.0), means.rows()],
             [1000.0, ROWS, ROWS, 0.0]

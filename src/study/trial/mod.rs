@@ -9,7 +9,9 @@ mod stopwatch;
 
 pub(crate) use failure::{FailureCause, RunFailure};
 pub(crate) use known::{MeanEstimate, ROWS, RowPace};
-pub(crate) use pairs::{PairedConfigurations, PairedMeans, TOGETHER, Window, pairs, part, steady};
+pub(crate) use pairs::{
+    PairedConfigurations, PairedMeans, TOGETHER, Window, run_pairs, shown_part, steady_bias,
+};
 pub(crate) use sample::{SampleSpan, TrialSample, values};
 pub(crate) use stopwatch::Stopwatch;
 

@@ -105,7 +105,7 @@ impl PairedRun {
 ///
 /// # Errors
 /// [`Broken`] names the configuration that failed.
-pub(crate) fn pairs(
+pub(crate) fn run_pairs(
     trial: &TrialControl<'_>,
     compared: &PairedConfigurations<'_>,
     (quantities, place): (&'static [ObservedQuantity], usize),
@@ -131,8 +131,10 @@ pub(crate) fn pairs(
         courses.par_iter_mut().enumerate().try_for_each(|(at, runs)| {
             let run =
                 |run: &mut PairedRun| run.advance((trial, &is_over), (compared.steps[at], rows), quantity);
-            let broken =
-                |failure: PhysicsFailure| FailedConfiguration { at, why: first_line(&failure.what()) };
+            let broken = |failure: PhysicsFailure| FailedConfiguration {
+                at,
+                why: first_line(&failure.what_and_when()),
+            };
             runs.par_iter_mut().try_for_each(run).map_err(broken)
         })?;
         let means = |runs: &Vec<PairedRun>| runs.iter().map(|run| run.mean(quantity.0.kind)).collect();
@@ -182,7 +184,7 @@ impl Window {
 }
 
 /// Part of the steady-state bias in the mean over the second half of a window (time), for a quantity with a memory (time).
-pub(crate) fn part(window: f64, memory: f64) -> f64 {
+pub(crate) fn shown_part(window: f64, memory: f64) -> f64 {
     let ratio = window / memory;
     // Expansion for short windows, where the terms cancel.
     match ratio {
@@ -193,7 +195,7 @@ pub(crate) fn part(window: f64, memory: f64) -> f64 {
 }
 
 /// Steady-state bias and immediate change `[b, a]`, from the differences over a window and the one before, each of which shows a part.
-pub(crate) fn steady([difference, before]: [f64; 2], [part, part_before]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn steady_bias([difference, before]: [f64; 2], [part, part_before]: [f64; 2]) -> [f64; 2] {
     let more = part - part_before;
     // A quantity without memory shows all of it at once.
     if 1.0 - part < ALL {
@@ -212,10 +214,10 @@ mod tests {
     /// By hand: 1 − (e^{−1} − e^{−2}) = 0.767456; three quarters of the ratio for a short window; everything for a long one.
     #[test]
     fn window_shows_part_of_the_bias() {
-        assert!((part(2.0, 1.0) - 0.767_455_842_1).abs() < 1e-9);
-        assert!((part(1e-6, 1.0) - 7.5e-7).abs() < 1e-12 && part(1e6, 1.0) > 0.999_99);
-        assert_eq!(part(1.0, 0.0), 1.0);
-        assert!((part(0.999e-4, 1.0) / part(1.001e-4, 1.0) - 0.999 / 1.001).abs() < 1e-4);
+        assert!((shown_part(2.0, 1.0) - 0.767_455_842_1).abs() < 1e-9);
+        assert!((shown_part(1e-6, 1.0) - 7.5e-7).abs() < 1e-12 && shown_part(1e6, 1.0) > 0.999_99);
+        assert_eq!(shown_part(1.0, 0.0), 1.0);
+        assert!((shown_part(0.999e-4, 1.0) / shown_part(1.001e-4, 1.0) - 0.999 / 1.001).abs() < 1e-4);
     }
 
     /// By hand: differences 0.1, 0.3 have a variance of 0.02; the means 1 and 3 one of 2, and 1.1 and 3.3 one of 2.42.
@@ -229,7 +231,7 @@ mod tests {
     /// By hand: b = 3 and a = −1 over windows that show a quarter and a half: 3/4 − 3/4 = 0 and 3/2 − 1/2 = 1.
     #[test]
     fn two_windows_separate_bias_and_immediate_change() {
-        assert_eq!(steady([1.0, 0.0], [0.5, 0.25]), [3.0, -1.0]);
-        assert_eq!(steady([1.0, 0.5], [1.0, 1.0]), [1.0, 0.0]);
+        assert_eq!(steady_bias([1.0, 0.0], [0.5, 0.25]), [3.0, -1.0]);
+        assert_eq!(steady_bias([1.0, 0.5], [1.0, 1.0]), [1.0, 0.0]);
     }
 }

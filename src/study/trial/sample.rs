@@ -84,12 +84,12 @@ impl TrialSample {
     }
 
     /// Warnings of its checks, joined.
-    pub(crate) fn warned(&self) -> String {
+    pub(crate) fn warning_text(&self) -> String {
         self.warnings.iter().map(|warning| warning.message.as_str()).collect::<Vec<_>>().join("; ")
     }
 
     /// Describes that the run ended before a time; none if it did not.
-    pub(crate) fn cut_off(&self, time: f64) -> Option<String> {
+    pub(crate) fn early_end(&self, time: f64) -> Option<String> {
         // The last stretch may end early by rounding.
         (self.time < time * (1.0 - 1e-9)).then(|| {
             format!(
@@ -102,7 +102,7 @@ impl TrialSample {
     }
 
     /// Describes why it has no mean.
-    pub(crate) fn without_mean(&self) -> String {
+    pub(crate) fn missing_mean_reason(&self) -> String {
         let time = significant(self.time, 3);
         match self.outcome {
             AverageOutcome::Changing { first, last } => format!(
@@ -255,8 +255,8 @@ impl TrialControl<'_> {
             all_rows.push(row);
         }
         let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
-        let (time, series, phases) = (simulation.clock().time, rows.course(place), phases(simulation));
-        let comes_beyond_end = prepared.schedule.until.has_come(&simulation.clock());
+        let (time, series, phases) = (simulation.clock().time, rows.time_series(place), phases(simulation));
+        let comes_beyond_end = prepared.schedule.until.has_been_reached(&simulation.clock());
         let warnings = simulation.warnings();
         let near = spent / gone;
         let [cost, row] = match of_stretch {

@@ -32,7 +32,7 @@ impl Stopwatch {
 
     /// Starts a synthetic clock: each unit of [`Simulation::work`] takes so many nanoseconds.
     #[cfg(test)]
-    pub(crate) fn made(nanoseconds: f64) -> Stopwatch {
+    pub(crate) fn with_synthetic_time(nanoseconds: f64) -> Stopwatch {
         Stopwatch(StopwatchKind::Made(AtomicU64::new(0), nanoseconds))
     }
 

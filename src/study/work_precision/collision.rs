@@ -8,7 +8,7 @@
 use super::orders::{FittedOrder, fit};
 use crate::study::choice::SettingChoice;
 use crate::study::runs::StudyRuns;
-use crate::study::state::{ParticleState, delayed};
+use crate::study::state::{ParticleState, delayed_scene};
 use crate::study::trial::{RunFailure, RunSampling};
 use crate::study::{StudyError, Subject};
 use stripmine_physics::method::{ChoiceEffect, StartPurpose};
@@ -86,13 +86,13 @@ pub(crate) fn collision(
     let Some(reference) = over_phases(&first, REFERENCE * smallest)? else { return Ok(None) };
     let reference = mean(&reference);
     let is_alike = |choice: &SettingChoice| {
-        [ChoiceEffect::Digits, ChoiceEffect::Cost].iter().all(|&decides| choice.agrees(&first, decides))
+        [ChoiceEffect::Digits, ChoiceEffect::Cost].iter().all(|&decides| choice.agrees_on(&first, decides))
     };
     let schemes: Vec<SettingChoice> =
         SettingChoice::all(runs.subject.entry.axes).into_iter().filter(is_alike).collect();
     let cases: Vec<(&SettingChoice, f64)> =
         schemes.iter().flat_map(|choice| steps.iter().map(move |step| (choice, *step))).collect();
-    let found = runs.journal.over(&cases, |&(choice, step)| {
+    let found = runs.journal.run_all(&cases, |&(choice, step)| {
         let error = |outcomes: Vec<[f64; 2]>| {
             let off: Vec<[f64; 2]> =
                 outcomes.iter().map(|outcome| [0, 1].map(|i| outcome[i] - reference[i])).collect();
@@ -130,7 +130,7 @@ fn outcome(
     step: f64,
     late: f64,
 ) -> Result<Option<[f64; 2]>, RunFailure> {
-    let scene = delayed(&runs.subject.prepared_as(choice, step, &Overrides::new())?, late);
+    let scene = delayed_scene(&runs.subject.prepared_as(choice, step, &Overrides::new())?, late);
     let domain = scene.domain;
     let steps = (runs.subject.duration() / step).round() as u64;
     let course = RunSampling { steps, looks: 1, each: 1e-6 };

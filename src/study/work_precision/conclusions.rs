@@ -32,7 +32,7 @@ fn cheapest(data: &WorkPrecision, error: f64, is_meant: fn(&DiagramRun) -> bool)
 
 /// For each target error that is above the reference's own and reached by a run, returns the cheapest run without a warning, or the reason why no run
 /// is recommended.
-pub(crate) fn wishes(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> {
+pub(crate) fn cheapest_runs(data: &WorkPrecision) -> Vec<(f64, Result<Cheapest<'_>, String>)> {
     let floor = data.reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
     let answer = |wish: f64| {
         let first = cheapest(data, wish, |_| true)?.run;
@@ -64,7 +64,7 @@ fn multiple(power: i32) -> String {
 
 /// Returns the cheapest run without a warning that is as accurate as the scene's own configuration; none where nothing is decided, or that one failed
 /// or was not timed.
-pub(crate) fn as_good(data: &WorkPrecision) -> Option<Cheapest<'_>> {
+pub(crate) fn cheapest_equivalent(data: &WorkPrecision) -> Option<Cheapest<'_>> {
     let error = own_run(data).filter(|_| data.undecided.is_none())?.error(Measure::Position)?;
     cheapest(data, error, DiagramRun::is_sound).filter(|found| found.of_own.is_some())
 }

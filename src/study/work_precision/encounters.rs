@@ -1,7 +1,7 @@
 //! Events per particle in a time: contacts that begin, or, without contacts, turns of the velocity. A comparison over a time with hardly any
 //! events says nothing about a scene.
 
-use super::growth::own_in_full_digits;
+use super::growth::own_in_full_precision;
 use crate::study::StudyError;
 use crate::study::runs::StudyRuns;
 use crate::study::trial::RunSampling;
@@ -47,7 +47,8 @@ pub(crate) fn encounters(
     let fits = |it: &ParticleEvents| it.of_contacts == of_contacts && it.each.is_finite() && it.each >= 0.0;
     let counted = runs.recall("encounters", fits, || {
         let mut counts = (ContactCounter::new(runs.subject.prepared.domain), TurnCounter::default());
-        let scene = runs.subject.prepared_as(&own_in_full_digits(runs.subject), step, &Overrides::new())?;
+        let scene =
+            runs.subject.prepared_as(&own_in_full_precision(runs.subject), step, &Overrides::new())?;
         let steps = (duration / step).round() as u64;
         let course = RunSampling { steps, looks: LOOKS.min(steps), each };
         let look = |simulation: &dyn Simulation| {
@@ -82,12 +83,12 @@ impl ContactCounter {
     fn look(&mut self, particles: &Particles) {
         let (discs, grains) = (particles.all(), particles.grain_count());
         let largest = particles.radii().map_or(0.0, |[_, largest]| largest);
-        let places = discs.iter().map(|disc| self.domain.wrapped(disc.place()));
-        let near = NeighbourSearch::among(self.domain, places, 2.0 * largest);
+        let places = discs.iter().map(|disc| self.domain.wrapped(disc.planar_position()));
+        let near = NeighbourSearch::over_positions(self.domain, places, 2.0 * largest);
         let mut standing = HashSet::new();
         for (disc, number) in discs[..grains].iter().zip(0_u32..) {
-            let place = self.domain.wrapped(disc.place());
-            for (other, there) in near.of(place).filter(|(other, _)| *other > number) {
+            let place = self.domain.wrapped(disc.planar_position());
+            for (other, there) in near.candidates_near(place).filter(|(other, _)| *other > number) {
                 let partner = &discs[other as usize];
                 if self.domain.distance(place, there) < disc.radius + partner.radius {
                     let pair = [disc.id, partner.id];

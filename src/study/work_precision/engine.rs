@@ -44,7 +44,7 @@ pub(crate) fn configurations(
         let each = runs.recall(&format!("probe|{}", choice.label()), is_time, || {
             runs.probe(&subject.prepared_as(choice, subject.step, &Overrides::new())?)
         })?;
-        let agrees = |decides| choice.agrees(&subject.own, decides);
+        let agrees = |decides| choice.agrees_on(&subject.own, decides);
         Ok(DiagramConfiguration {
             label: choice.label(),
             scheme: choice.names(ChoiceEffect::Order).join(" "),
@@ -145,7 +145,7 @@ impl PlannedDiagram<'_> {
         let [first, second] = &choices;
         let power = -(self.plan.finest + BELOW);
         let cases = [(first, power), (first, power + 1), (second, power)];
-        let ends: Vec<RunEnd> = self.runs.journal.over(&cases, |&(choice, power)| {
+        let ends: Vec<RunEnd> = self.runs.journal.run_all(&cases, |&(choice, power)| {
             let key = format!("reference|{}|{power}", choice.label());
             let grains = self.subject().prepared.particles().grain_count();
             let fits = |ended: &RunEnd| ended.state.len() == grains;
@@ -180,7 +180,7 @@ impl PlannedDiagram<'_> {
         state: &ParticleState,
     ) -> Result<Vec<DiagramRun>, StudyError> {
         let floor = ABOVE_FLOOR * reference.floor.get(&Measure::Position).copied().unwrap_or(0.0);
-        let runs: Vec<Vec<DiagramRun>> = self.runs.journal.over(&self.plan.choices, |&configuration| {
+        let runs: Vec<Vec<DiagramRun>> = self.runs.journal.run_all(&self.plan.choices, |&configuration| {
             let mut runs: Vec<DiagramRun> = vec![];
             for power in (-self.plan.finest..=0).rev() {
                 runs.push(self.run(configuration, power, state)?);
@@ -264,8 +264,8 @@ impl PlannedDiagram<'_> {
     pub(crate) fn orders(&self, runs: &[DiagramRun], reference: &DiagramReference) -> Vec<ConvergenceOrder> {
         let first = self.subject().reference(0);
         let is_fitted = |choice: &SettingChoice| {
-            choice.agrees(&first, ChoiceEffect::Digits)
-                && choice.agrees(&self.subject().own, ChoiceEffect::Cost)
+            choice.agrees_on(&first, ChoiceEffect::Digits)
+                && choice.agrees_on(&self.subject().own, ChoiceEffect::Cost)
         };
         let order = |configuration: usize, measure: Measure| {
             let floor = reference.floor.get(&measure).copied().unwrap_or(0.0);

@@ -1,6 +1,6 @@
 //! Frames of diagrams.
 
-use super::conclusions::{as_good, own_run, wishes as wishes_of};
+use super::conclusions::{cheapest_equivalent, cheapest_runs as wishes_of, own_run};
 use super::dataset::{DiagramConfiguration, DiagramRun, NamedDiagrams, WorkPrecision};
 use super::growth::EndedBy;
 use super::measures::{Errors, Measure};
@@ -44,9 +44,13 @@ fn of_scenes(scenes: &NamedDiagrams) -> ResultFrame {
         .short("own error", |(_, data)| own_run(data)?.error(Measure::Position))
         .text("own failure", |(_, data)| own_run(data).map_or("", why))
         .text("own objections", |(_, data)| own_run(data).map_or(String::new(), DiagramRun::objections))
-        .text("as accurate", |(_, data)| as_good(data).map_or("", |found| &data.of(found.run).label))
-        .short("its step (own steps)", |(_, data)| as_good(data).map(|found| in_own_steps(found.run)))
-        .number("its cost over the own cost", 3, |(_, data)| as_good(data)?.of_own)
+        .text("as accurate", |(_, data)| {
+            cheapest_equivalent(data).map_or("", |found| &data.of(found.run).label)
+        })
+        .short("its step (own steps)", |(_, data)| {
+            cheapest_equivalent(data).map(|found| in_own_steps(found.run))
+        })
+        .number("its cost over the own cost", 3, |(_, data)| cheapest_equivalent(data)?.of_own)
         .text("why nothing is decided", |(_, data)| data.undecided.clone().unwrap_or_default())
         .count("left out of the time", |(_, data)| {
             u64::from(data.duration < 0.9 * data.growth.window && !data.plan.left_out.is_empty())

@@ -71,7 +71,7 @@ impl DisturbanceGrowth {
 /// # Errors
 /// [`StudyError::EveryRunFails`] if no step works.
 pub(crate) fn growth(runs: &StudyRuns<'_>, most: u64, each: f64) -> Result<DisturbanceGrowth, StudyError> {
-    let own = own_in_full_digits(runs.subject);
+    let own = own_in_full_precision(runs.subject);
     let mut tried = vec![];
     for halvings in 0..=HALVINGS {
         match of_step(runs, &own, halvings, (most, each))? {
@@ -122,7 +122,7 @@ fn of_step(
 }
 
 /// The scene's own configuration in the precision of the reference: a small disturbance must not be lost in rounding.
-pub(crate) fn own_in_full_digits(subject: &Subject) -> SettingChoice {
+pub(crate) fn own_in_full_precision(subject: &Subject) -> SettingChoice {
     let is_of_digits = |name: &str| {
         subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == ChoiceEffect::Digits)
     };

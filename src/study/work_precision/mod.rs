@@ -73,7 +73,7 @@ pub(crate) fn work_precision(
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
     if !subject.trials.has_trajectories {
-        return Err(parted(
+        return Err(diverging_trajectories(
             subject,
             "noise moves the particles along a different path at each step".to_owned(),
         ));
@@ -82,7 +82,7 @@ pub(crate) fn work_precision(
     let meter = ProgressMeter::new(effort.budget, progress);
     let runs = &StudyRuns { subject, trial, journal, meter: &meter };
     let choices = SettingChoice::all(subject.entry.axes);
-    let configurations = journal.once(|| configurations(runs, &choices))?;
+    let configurations = journal.run_on_one(|| configurations(runs, &choices))?;
     let rates: Vec<Option<f64>> = configurations.iter().map(|it| it.each.as_ref().ok().copied()).collect();
     let all_rates = || rates.iter().flatten().copied();
     if all_rates().next().is_none() {
@@ -94,13 +94,13 @@ pub(crate) fn work_precision(
     let own_rate = own_rate.unwrap_or_else(|| median(all_rates()));
     let most = (GROWTH_SHARE * effort.budget / (4.0 * own_rate)) as u64;
     let most = subject.steps.min(most.max(1 << COARSEST));
-    let growth = journal.once(|| growth(runs, most, own_rate))?;
+    let growth = journal.run_on_one(|| growth(runs, most, own_rate))?;
     let comparable = (growth.window / subject.step).round() as u64;
     let plan = plan(&choices, &rates, &subject.own, comparable, effort.budget, effort.repeats);
     let planned = PlannedDiagram { runs, effort, choices: &choices, rates: &rates, plan: &plan };
     meter.expect(plan.seconds);
     let duration = planned.duration();
-    let encounters = journal.once(|| encounters(runs, growth.step, duration, own_rate))?;
+    let encounters = journal.run_on_one(|| encounters(runs, growth.step, duration, own_rate))?;
     let undecided = undecided(subject, &growth, &encounters, duration)?;
     let (reference, state) = planned.reference(own_rate)?;
     let mut all = planned.all(&reference, &state)?;
@@ -135,7 +135,7 @@ pub(crate) fn work_precision(
     })
 }
 
-fn parted(subject: &Subject, why: String) -> StudyError {
+fn diverging_trajectories(subject: &Subject, why: String) -> StudyError {
     let quantity = subject.trials.observables.first().copied().unwrap_or_default();
     StudyError::NoTrajectories { scene: subject.arguments(), why, quantity }
 }
@@ -158,7 +158,10 @@ fn undecided(
     let is_all_of_window = duration > 0.9 * growth.window;
     if is_cut_by_growth && (growth.window < USEFUL * whole || is_little && is_all_of_window) {
         let [window, whole] = [growth.window, whole].map(|time| significant(time, 3));
-        return Err(parted(subject, format!("trajectories diverge after a time of {window} of {whole}")));
+        return Err(diverging_trajectories(
+            subject,
+            format!("trajectories diverge after a time of {window} of {whole}"),
+        ));
     }
     let [time, whole] = [duration, whole].map(|time| significant(time, 3));
     let [each, events] = [&significant(encounters.each, 2), encounters.name()];

@@ -101,7 +101,7 @@ pub(crate) fn plan(
 }
 
 fn is_run(choice: &SettingChoice, own: &SettingChoice, scope: DiagramScope) -> bool {
-    let same = |decides| choice.agrees(own, decides);
+    let same = |decides| choice.agrees_on(own, decides);
     let [order, digits, cost] = [ChoiceEffect::Order, ChoiceEffect::Digits, ChoiceEffect::Cost].map(same);
     match scope {
         DiagramScope { every_cost: true, .. } => true,

@@ -34,7 +34,7 @@ fn effort(budget: f64) -> DiagramEffort {
 
 /// Measured frames by name.
 fn measured(subject: &Subject, effort: &DiagramEffort) -> Result<Value, StudyError> {
-    let (watch, stop) = (Stopwatch::made(NANOSECONDS), AtomicBool::new(false));
+    let (watch, stop) = (Stopwatch::with_synthetic_time(NANOSECONDS), AtomicBool::new(false));
     let trial = TrialControl { watch: &watch, stop: &stop };
     let data = work_precision(subject, effort, trial, &Journal::none(), &|_| {})?;
     Ok(made(&[("scene".to_owned(), data)]).json())
@@ -242,7 +242,7 @@ fn an_interrupted_study_resumes() {
     let identity = JournalIdentity { of: "pressed".to_owned(), digest: "12345678".to_owned() };
     let subject = written(PRESSED, &[]);
     let run = |stop: &AtomicBool, until: f64| {
-        let watch = Stopwatch::made(NANOSECONDS);
+        let watch = Stopwatch::with_synthetic_time(NANOSECONDS);
         let journal = Journal::open(folder.path(), &identity, None).unwrap();
         let progress = |share: f64| stop.fetch_or(share > until, Ordering::Relaxed);
         let trial = TrialControl { watch: &watch, stop };

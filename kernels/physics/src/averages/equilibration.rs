@@ -22,11 +22,11 @@ const AGREEING: f64 = 2.0;
 /// Simulation 69, 323 (1997)). In contrast to the number of independent samples, this rule detects a transient of a single row. A beginning that
 /// agrees with the rest is kept. At the cut, the transient has fallen below the noise of a batch, but not below that of the mean: an equal part is
 /// cut in addition, which squares the remainder of an exponential.
-pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
+pub(super) fn transient_length(series: &[f64]) -> Option<usize> {
     let cut = least_error(series);
     // A transient shorter than the cut deviates more in a part of it.
     let mut beginnings = std::iter::successors(Some(cut), |it| Some(it / 2)).take_while(|&it| it > 0);
-    if !beginnings.any(|it| differ(&series[..it], &series[cut..], DIFFERENT)) {
+    if !beginnings.any(|it| has_different_mean(&series[..it], &series[cut..], DIFFERENT)) {
         return Some(0);
     }
     // A transient of a few rows is within one batch; a shorter series has shorter batches.
@@ -35,7 +35,10 @@ pub(super) fn equilibrated(series: &[f64]) -> Option<usize> {
     while beginning.len() > BATCHES {
         beginning = &beginning[..beginning.len() / FINER];
         let shorter = 2 * least_error(beginning);
-        if shorter == 0 || shorter >= cut || differ(&series[shorter..cut], &series[cut..], AGREEING) {
+        if shorter == 0
+            || shorter >= cut
+            || has_different_mean(&series[shorter..cut], &series[cut..], AGREEING)
+        {
             break;
         }
         start = shorter;
@@ -82,7 +85,7 @@ impl RunningVariance {
 
 /// Tests if the mean of a first part differs from that of the rest by a number of standard errors. A part shorter than the correlation time varies
 /// like a single value. No section of the rest of the same length may have such a mean: rare events are not a transient.
-fn differ(first: &[f64], rest: &[f64], errors: f64) -> bool {
+fn has_different_mean(first: &[f64], rest: &[f64], errors: f64) -> bool {
     let WaveError { mean: expected, standard_error, samples, .. } = WaveError::of(rest);
     let square = standard_error * standard_error;
     let of_first = (square * rest.len() as f64 / first.len() as f64).min(square * samples);
@@ -102,7 +105,7 @@ pub(super) fn batches(series: &[f64]) -> (usize, Vec<f64>) {
 mod tests {
     use super::*;
     use crate::averages::noise::Noise;
-    use crate::averages::{AverageOutcome, estimated};
+    use crate::averages::{AverageOutcome, estimate_mean};
 
     /// A step of ten values, far above noise of known size: ten values are cut, and ten more.
     #[test]
@@ -110,7 +113,7 @@ mod tests {
         for (height, first) in [(50.0, 10), (-4.0, 10), (5e4, 1)] {
             let mut series = Noise::new(1).series(64, 0.0);
             series[..first].iter_mut().for_each(|value| *value += height);
-            assert_eq!(equilibrated(&series), Some(2 * first), "{height}");
+            assert_eq!(transient_length(&series), Some(2 * first), "{height}");
         }
     }
 
@@ -118,7 +121,7 @@ mod tests {
     fn transients_are_cut_and_stationary_series_kept() {
         let cut = |height| {
             let cuts = (0..100).filter_map(|seed| {
-                equilibrated(&Noise::new(seed).relaxing(1000, 0.5, height, 20.0)).map(|cut| cut as f64)
+                transient_length(&Noise::new(seed).relaxing(1000, 0.5, height, 20.0)).map(|cut| cut as f64)
             });
             let cuts: Vec<f64> = cuts.collect();
             assert!(cuts.len() > 95, "{height}: {}", cuts.len());
@@ -132,7 +135,7 @@ mod tests {
     /// An outlier in the first of two thousand rows costs a few rows, not a batch of them.
     #[test]
     fn outlier_in_first_row_costs_few_rows() {
-        let cut = |seed| equilibrated(&Noise::new(seed).relaxing(2000, 0.3, 5e4, 0.2)).unwrap();
+        let cut = |seed| transient_length(&Noise::new(seed).relaxing(2000, 0.3, 5e4, 0.2)).unwrap();
         let mut cuts: Vec<usize> = (0..50).map(cut).collect();
         cuts.sort_unstable();
         assert!(cuts[0] >= 4 && cuts[40] <= 64, "{cuts:?}");
@@ -142,7 +145,7 @@ mod tests {
     fn long_transients_have_no_mean() {
         for duration in [30.0, 75.0, 150.0] {
             let decay: Vec<f64> = (0..200).map(|at| libm::exp(-f64::from(at) / duration)).collect();
-            let outcome = estimated(&decay, 0.0, 1.0);
+            let outcome = estimate_mean(&decay, 0.0, 1.0);
             assert!(!matches!(outcome, AverageOutcome::Mean(_)), "{duration}: {outcome:?}");
         }
     }

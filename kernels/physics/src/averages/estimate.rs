@@ -1,6 +1,6 @@
 //! Estimate of the mean of a series with its error, or the reason why there is none.
 
-use super::equilibration::{batches, equilibrated};
+use super::equilibration::{batches, transient_length};
 use super::student::student;
 use super::waves::{WaveError, is_smooth_drift, mean};
 use serde::Serialize;
@@ -93,7 +93,7 @@ pub(super) fn bar(error: f64, freedoms: f64) -> f64 {
 }
 
 /// Mean of independent values with the half-width of its 95 % confidence interval; none for fewer than two.
-pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
+pub fn mean_of_independent(values: &[f64]) -> Option<[f64; 2]> {
     if values.len() < 2 {
         return None;
     }
@@ -104,21 +104,21 @@ pub fn of_independent(values: &[f64]) -> Option<[f64; 2]> {
 
 /// Mean of a time series with the half-width of its 95 % confidence interval; none for fewer than two values. The values may be correlated, and
 /// must be stationary.
-pub fn of_correlated(values: &[f64]) -> Option<[f64; 2]> {
+pub fn mean_of_correlated(values: &[f64]) -> Option<[f64; 2]> {
     let error = (values.len() > 1).then(|| WaveError::of_any(values))?;
     Some([error.mean, bar(error.standard_error, error.waves as f64)])
 }
 
 /// Half-width of the 95 % confidence interval for the mean of a stationary series, and its degrees of freedom; none for fewer than two values.
 /// There are more degrees of freedom than in an [`Estimate`], so that errors of other runs can be predicted.
-pub fn foreseeing(values: &[f64]) -> Option<[f64; 2]> {
+pub fn predictive_half_width(values: &[f64]) -> Option<[f64; 2]> {
     let error = (values.len() > 1).then(|| WaveError::of_more(values))?;
     let freedoms = error.waves as f64;
     Some([bar(error.standard_error, freedoms), freedoms])
 }
 
 /// Estimates the mean of a series of values `spacing` apart, the first at `from` + `spacing` (time).
-pub fn estimated(series: &[f64], from: f64, spacing: f64) -> AverageOutcome {
+pub fn estimate_mean(series: &[f64], from: f64, spacing: f64) -> AverageOutcome {
     let few = |independent_samples: f64, enough_at: f64, estimate: Option<Estimate>| {
         AverageOutcome::TooShort { independent_samples, enough_at, estimate }
     };
@@ -137,7 +137,7 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> AverageOutcome {
     if n < FEWEST_SAMPLES {
         return few(n, from + FEWEST_SAMPLES * spacing, None);
     }
-    let cut = equilibrated(series);
+    let cut = transient_length(series);
     let start = cut.unwrap_or(0);
     let kept = &series[start..];
     let error = WaveError::of(kept);
@@ -147,12 +147,12 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> AverageOutcome {
             return AverageOutcome::Changing { first, last };
         }
         let samples = estimate.independent_samples.min(FEWEST_SAMPLES - 1.0);
-        let seeming = error.seeming.min(PER_CARRIER * carriers(kept)).max(1.0);
+        let seeming = error.seeming.min(PER_CARRIER * variance_carriers(kept)).max(1.0);
         let longer = (LIKELY_ENOUGH / seeming).max(if cut.is_none() { 2.0 } else { 1.0 });
         let enough_at = estimate.equilibrated_at + longer * estimate.span;
         return few(samples, enough_at, cut.map(|_| estimate));
     }
-    if error.drifts(if start > 0 { DRIFT_AFTER_TRANSIENT } else { DRIFT }) {
+    if error.is_drifting(if start > 0 { DRIFT_AFTER_TRANSIENT } else { DRIFT }) {
         return AverageOutcome::Changing { first, last };
     }
     AverageOutcome::Mean(estimate)
@@ -161,7 +161,7 @@ pub fn estimated(series: &[f64], from: f64, spacing: f64) -> AverageOutcome {
 impl Estimate {
     fn of(error: &WaveError, kept: &[f64], equilibrated_at: f64, spacing: f64) -> Estimate {
         let n = kept.len() as f64;
-        let fewest = error.resolved.min(PER_CARRIER * carriers(kept));
+        let fewest = error.resolved.min(PER_CARRIER * variance_carriers(kept));
         let independent_samples =
             if fewest < FEWEST_SAMPLES { error.samples.min(fewest) } else { error.samples };
         let inefficiency = n / error.samples;
@@ -180,7 +180,7 @@ impl Estimate {
 }
 
 /// Number of batches that carry the variance of a series, (Σx²)²/Σx⁴ about the mean: small if the series varies by rare events only.
-fn carriers(series: &[f64]) -> f64 {
+fn variance_carriers(series: &[f64]) -> f64 {
     let (_, means) = batches(series);
     let middle = mean(&means);
     let squares = means.iter().map(|value| (value - middle).powi(2));
@@ -243,7 +243,7 @@ mod tests {
         const SEEDS: u64 = 400;
         for (name, series, truth, least) in SERIES {
             let means: Vec<bool> = (0..SEEDS)
-                .filter_map(|seed| match estimated(&series(seed), 0.0, 1.0) {
+                .filter_map(|seed| match estimate_mean(&series(seed), 0.0, 1.0) {
                     AverageOutcome::Mean(estimate) => Some((estimate.mean - truth).abs() <= estimate.bar),
                     _ => None,
                 })
@@ -261,7 +261,7 @@ mod tests {
         for (samples, most) in [(1.0, 0.002), (2.5, 0.002), (5.0, 0.005), (10.0, 0.05)] {
             let (length, memory) = (400, (400.0 / samples - 1.0) / (400.0 / samples + 1.0));
             let outcomes =
-                (0..1000).map(|seed| estimated(&Noise::new(seed).series(length, memory), 0.0, 1.0));
+                (0..1000).map(|seed| estimate_mean(&Noise::new(seed).series(length, memory), 0.0, 1.0));
             let [mut means, mut changing] = [0; 2];
             for outcome in outcomes {
                 match outcome {
@@ -283,7 +283,7 @@ mod tests {
         };
         for count in [1, 2, 4] {
             let AverageOutcome::TooShort { independent_samples, enough_at, .. } =
-                estimated(&series(count), 0.0, 1.0)
+                estimate_mean(&series(count), 0.0, 1.0)
             else {
                 panic!("{count} events have a mean");
             };
@@ -309,7 +309,7 @@ mod tests {
             (400, 0.9, 0.98),
         ] {
             let found =
-                (0..1000).map(|seed| of_correlated(&Noise::new(seed).series(length, memory)).unwrap());
+                (0..1000).map(|seed| mean_of_correlated(&Noise::new(seed).series(length, memory)).unwrap());
             let held = share(found.filter(|[mean, bar]| mean.abs() <= *bar).count(), 1000);
             println!("{length} values, {memory}: {held}");
             assert!((0.92..=most).contains(&held), "{length} values, {memory}: {held}");
@@ -326,7 +326,7 @@ mod tests {
                 slow.zip(Noise::new(seed).series(1000, 0.0))
                     .map(|(a, b)| 0.3_f64.sqrt() * a + 0.7_f64.sqrt() * b)
             };
-            let outcomes = (0..400).map(|seed| estimated(&series(seed).collect::<Vec<_>>(), 0.0, 1.0));
+            let outcomes = (0..400).map(|seed| estimate_mean(&series(seed).collect::<Vec<_>>(), 0.0, 1.0));
             let means = outcomes.filter(|outcome| matches!(outcome, AverageOutcome::Mean(_))).count();
             println!("{slow_samples} slow samples: {means} of 400 have a mean");
             assert!(share(means, 400) <= most, "{slow_samples}: {means}");
@@ -338,7 +338,7 @@ mod tests {
     fn stationary_series_are_rarely_cut() {
         for memory in [0.0, 0.5, 0.9] {
             let cuts = (0..1000).filter(|&seed| {
-                matches!(estimated(&Noise::new(seed).series(1000, memory), 0.0, 1.0),
+                matches!(estimate_mean(&Noise::new(seed).series(1000, memory), 0.0, 1.0),
                     AverageOutcome::Mean(estimate) if estimate.equilibrated_at > 0.0)
             });
             let cuts = cuts.count();
@@ -350,27 +350,27 @@ mod tests {
     /// Hand calculation: the mean 2, the standard error 1/√3, Student's t with two degrees of freedom.
     #[test]
     fn independent_values_have_students_half_width() {
-        let [mean, bar] = of_independent(&[1.0, 2.0, 3.0]).unwrap();
+        let [mean, bar] = mean_of_independent(&[1.0, 2.0, 3.0]).unwrap();
         assert!(mean == 2.0 && (bar - 4.3027 / 3f64.sqrt()).abs() < 1e-4, "{bar}");
-        assert_eq!(of_independent(&[1.0]), None);
+        assert_eq!(mean_of_independent(&[1.0]), None);
     }
 
     #[test]
     fn outcomes_without_mean_are_distinguished() {
         let line: Vec<f64> = (0..500).map(f64::from).collect();
-        assert_eq!(estimated(&line, 0.0, 1.0), AverageOutcome::Changing { first: 0.0, last: 499.0 });
+        assert_eq!(estimate_mean(&line, 0.0, 1.0), AverageOutcome::Changing { first: 0.0, last: 499.0 });
         let cooling: Vec<f64> = (0..100).map(|at| (1.0 + f64::from(at)).powi(-2)).collect();
-        assert!(matches!(estimated(&cooling, 0.0, 1.0), AverageOutcome::Changing { .. }));
-        assert_eq!(estimated(&[2.5; 40], 0.0, 1.0), AverageOutcome::Constant { mean: 2.5 });
+        assert!(matches!(estimate_mean(&cooling, 0.0, 1.0), AverageOutcome::Changing { .. }));
+        assert_eq!(estimate_mean(&[2.5; 40], 0.0, 1.0), AverageOutcome::Constant { mean: 2.5 });
         let rounded: Vec<f64> = (0..40).map(|at| 2.5 + 1e-14 * f64::from(at)).collect();
-        assert!(matches!(estimated(&rounded, 0.0, 1.0), AverageOutcome::Constant { .. }));
+        assert!(matches!(estimate_mean(&rounded, 0.0, 1.0), AverageOutcome::Constant { .. }));
         let mut undefined = vec![2.5; 40];
         undefined[7] = f64::NAN;
-        assert_eq!(estimated(&undefined, 0.0, 1.0), AverageOutcome::Undefined);
+        assert_eq!(estimate_mean(&undefined, 0.0, 1.0), AverageOutcome::Undefined);
         let few = AverageOutcome::TooShort { independent_samples: 3.0, enough_at: 12.0, estimate: None };
-        assert_eq!(estimated(&[1.0, 2.0, 1.0], 2.0, 0.5), few);
+        assert_eq!(estimate_mean(&[1.0, 2.0, 1.0], 2.0, 0.5), few);
         // For a correlation time comparable to the run, the predicted length has the right order of magnitude.
-        let slow = (0..20).map(|seed| estimated(&Noise::new(seed).series(400, 0.97), 0.0, 1.0));
+        let slow = (0..20).map(|seed| estimate_mean(&Noise::new(seed).series(400, 0.97), 0.0, 1.0));
         let short: Vec<f64> = slow
             .filter_map(|outcome| match outcome {
                 AverageOutcome::TooShort { enough_at, .. } => Some(enough_at),

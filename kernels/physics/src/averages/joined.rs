@@ -28,7 +28,7 @@ pub fn joined(runs: &[RunAverages]) -> RunAverages {
         runs.iter().map(|run| run.quantities[place].outcome).collect()
     };
     let spans: Vec<f64> = runs.iter().map(|run| run.span).collect();
-    let is_one_ensemble = !(0..first.quantities.len()).any(|place| differ_for_good(&outcomes(place)));
+    let is_one_ensemble = !(0..first.quantities.len()).any(|place| differ_permanently(&outcomes(place)));
     let quantities = first.quantities.iter().enumerate().map(|(place, average)| {
         let outcome = joined_outcome(&outcomes(place), &spans, is_one_ensemble);
         Average { outcome, ..average.clone() }
@@ -44,7 +44,7 @@ pub fn joined(runs: &[RunAverages]) -> RunAverages {
 }
 
 /// Tests if every run conserves the quantity and runs differ in it.
-fn differ_for_good(outcomes: &[AverageOutcome]) -> bool {
+fn differ_permanently(outcomes: &[AverageOutcome]) -> bool {
     let conserved = outcomes.iter().map(|outcome| match *outcome {
         AverageOutcome::Constant { mean } => Some((mean, 0.0)),
         AverageOutcome::Kept { first, farthest, .. } => Some((first, farthest)),
@@ -62,7 +62,7 @@ fn joined_outcome(outcomes: &[AverageOutcome], spans: &[f64], is_one_ensemble: b
     if let [only] = outcomes {
         return *only;
     }
-    if let Some(outcome) = obstacle(outcomes) {
+    if let Some(outcome) = outcome_without_mean(outcomes) {
         return outcome;
     }
     // Mean of each run with its time; a constant has no samples.
@@ -111,7 +111,7 @@ fn joined_outcome(outcomes: &[AverageOutcome], spans: &[f64], is_one_ensemble: b
 }
 
 /// Outcome that prevents a joined mean, the gravest of all, so that it is independent of the order of the runs.
-fn obstacle(outcomes: &[AverageOutcome]) -> Option<AverageOutcome> {
+fn outcome_without_mean(outcomes: &[AverageOutcome]) -> Option<AverageOutcome> {
     let weight = |outcome: &AverageOutcome| match *outcome {
         AverageOutcome::Undefined => Some([4.0, 0.0]),
         AverageOutcome::Kept { farthest, .. } => Some([3.0, farthest]),
@@ -188,7 +188,7 @@ impl Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::averages::estimated;
+    use crate::averages::estimate_mean;
     use crate::averages::noise::Noise;
 
     fn mean(outcome: AverageOutcome) -> Estimate {
@@ -210,7 +210,7 @@ mod tests {
                 let means = Noise::new(1_000_000 + seed).series(runs, 0.0);
                 let runs = means.into_iter().zip(0_u64..).map(|(energy, run)| {
                     let series = Noise::new(10 * seed + run).relaxing(1200, 0.6, 8.0, 10.0);
-                    estimated(&series.iter().map(|x| x + own * energy).collect::<Vec<_>>(), 0.0, 1.0)
+                    estimate_mean(&series.iter().map(|x| x + own * energy).collect::<Vec<_>>(), 0.0, 1.0)
                 });
                 runs.collect::<Vec<_>>()
             });
@@ -241,10 +241,10 @@ mod tests {
     /// Two runs with a mean and one without events: the outcome is the same in every order, and includes all three.
     #[test]
     fn joins_are_independent_of_order() {
-        let varying = [1, 2].map(|seed| estimated(&Noise::new(seed).series(1000, 0.5), 0.0, 1.0));
+        let varying = [1, 2].map(|seed| estimate_mean(&Noise::new(seed).series(1000, 0.5), 0.0, 1.0));
         let [a, b] = varying;
         let (still, short) =
-            (AverageOutcome::Constant { mean: 0.0 }, estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0));
+            (AverageOutcome::Constant { mean: 0.0 }, estimate_mean(&Noise::new(3).series(60, 0.9), 0.0, 1.0));
         assert!(matches!(short, AverageOutcome::TooShort { estimate: Some(_), .. }));
         for third in [still, short] {
             let joined = |order: [AverageOutcome; 3]| mean(join(&order, true));
@@ -268,7 +268,7 @@ mod tests {
     /// their errors. Over times of 1, 1, 1, 3 the mean is 4, with an effective number of three runs.
     #[test]
     fn four_runs_have_the_error_of_their_spread() {
-        let AverageOutcome::Mean(some) = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else {
+        let AverageOutcome::Mean(some) = estimate_mean(&Noise::new(1).series(1000, 0.5), 0.0, 1.0) else {
             panic!()
         };
         let run = |mean, span| AverageOutcome::Mean(Estimate { mean, span, ..some });
@@ -283,8 +283,8 @@ mod tests {
     /// One of two runs may be too short, but not two of three.
     #[test]
     fn joins_of_mostly_short_runs_are_too_short() {
-        let long = estimated(&Noise::new(1).series(1000, 0.5), 0.0, 1.0);
-        let short = estimated(&Noise::new(3).series(60, 0.9), 0.0, 1.0);
+        let long = estimate_mean(&Noise::new(1).series(1000, 0.5), 0.0, 1.0);
+        let short = estimate_mean(&Noise::new(3).series(60, 0.9), 0.0, 1.0);
         let AverageOutcome::TooShort { enough_at, .. } = short else { panic!("{short:?}") };
         assert!(matches!(join(&[long, short], true), AverageOutcome::Mean(_)));
         let AverageOutcome::TooShort { enough_at: found, .. } = join(&[short, long, short], true) else {
@@ -297,17 +297,17 @@ mod tests {
     #[test]
     fn different_conserved_numbers_are_detected() {
         let kept = |first, farthest| AverageOutcome::Kept { first, last: first, farthest };
-        assert!(differ_for_good(&[
+        assert!(differ_permanently(&[
             AverageOutcome::Constant { mean: 51.4 },
             AverageOutcome::Constant { mean: 48.0 }
         ]));
-        assert!(differ_for_good(&[kept(0.3, 1e-12), kept(-0.2, 1e-12)]));
-        assert!(!differ_for_good(&[kept(1e-17, 1e-13), kept(-2e-16, 1e-13)]));
-        assert!(!differ_for_good(&[kept(0.3, 2.0), kept(-0.2, 3.0)]));
-        assert!(!differ_for_good(&[AverageOutcome::Constant { mean: 0.0 }; 3]));
-        assert!(!differ_for_good(&[
+        assert!(differ_permanently(&[kept(0.3, 1e-12), kept(-0.2, 1e-12)]));
+        assert!(!differ_permanently(&[kept(1e-17, 1e-13), kept(-2e-16, 1e-13)]));
+        assert!(!differ_permanently(&[kept(0.3, 2.0), kept(-0.2, 3.0)]));
+        assert!(!differ_permanently(&[AverageOutcome::Constant { mean: 0.0 }; 3]));
+        assert!(!differ_permanently(&[
             AverageOutcome::Constant { mean: 0.0 },
-            estimated(&[1.0, 2.0], 0.0, 1.0)
+            estimate_mean(&[1.0, 2.0], 0.0, 1.0)
         ]));
     }
 }

@@ -15,7 +15,8 @@ mod waves;
 mod words;
 
 pub use estimate::{
-    AverageOutcome, Estimate, LIKELY_ENOUGH, estimated, foreseeing, of_correlated, of_independent,
+    AverageOutcome, Estimate, LIKELY_ENOUGH, estimate_mean, mean_of_correlated, mean_of_independent,
+    predictive_half_width,
 };
 pub use joined::joined;
 pub use rows::AveragedRows;
@@ -73,7 +74,7 @@ impl Average {
         let quantity = rows.quantities()[place];
         let outcome = match quantity.kind {
             QuantityKind::Kept => {
-                let [first, last, farthest] = rows.kept(place);
+                let [first, last, farthest] = rows.first_last_and_farthest(place);
                 let is_number = first.is_finite() && farthest.is_finite();
                 if is_number {
                     AverageOutcome::Kept { first, last, farthest }
@@ -81,7 +82,7 @@ impl Average {
                     AverageOutcome::Undefined
                 }
             }
-            _ => estimated(&rows.series(place), rows.from(), rows.block_spacing()),
+            _ => estimate_mean(&rows.series(place), rows.from(), rows.block_spacing()),
         };
         Average { quantity: quantity.name, of: what(quantity), unit: unit(quantity), outcome }
     }

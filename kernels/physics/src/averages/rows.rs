@@ -154,14 +154,14 @@ impl AveragedRows {
     }
 
     /// Time series of a quantity: (end of the interval, value).
-    pub fn course(&self, place: usize) -> Vec<[f64; 2]> {
+    pub fn time_series(&self, place: usize) -> Vec<[f64; 2]> {
         let (from, spacing) = (self.from(), self.block_spacing());
         let values = self.series(place).into_iter().zip(1_u32..);
         values.map(|(value, number)| [from + f64::from(number) * spacing, value]).collect()
     }
 
     /// First value, last value, and the largest difference from the first.
-    pub(super) fn kept(&self, place: usize) -> [f64; 3] {
+    pub(super) fn first_last_and_farthest(&self, place: usize) -> [f64; 3] {
         let at = |row: &[f64]| row.get(place).copied().unwrap_or(0.0);
         [at(&self.base), at(&self.last), self.farthest[place]]
     }
@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(rows.series(1), [2.0; 3]);
         assert_eq!(rows.series(2), [6.0, 18.0, 12.0]);
         assert_eq!(rows.series(3), [1.0, 4.0, 6.0]);
-        assert_eq!((rows.kept(4), rows.from(), rows.now()), ([0.0, -1.5, 1.5], 0.0, 1.5));
+        assert_eq!((rows.first_last_and_farthest(4), rows.from(), rows.now()), ([0.0, -1.5, 1.5], 0.0, 1.5));
     }
 
     /// Blocks of a long run are compared with all of its rows.

@@ -94,7 +94,7 @@ impl WaveError {
     }
 
     /// Tests for drift: the slowest wave is larger than the others beyond statistical error, at a given probability.
-    pub(super) fn drifts(&self, probability: f64) -> bool {
+    pub(super) fn is_drifting(&self, probability: f64) -> bool {
         self.waves > 1 && self.slowest > student(probability, self.waves - 1).powi(2)
     }
 }
@@ -181,13 +181,13 @@ mod tests {
     #[test]
     fn drift_is_distinguished_from_noise() {
         let stationary = (0..2000).map(|seed| Noise::new(seed).series(400, 0.8));
-        let called = stationary.filter(|series| WaveError::of(series).drifts(0.999)).count();
+        let called = stationary.filter(|series| WaveError::of(series).is_drifting(0.999)).count();
         assert!(called <= 8, "{called} of 2000");
         let walks = (0..2000).map(|seed| Noise::new(seed).series(400, 0.9999));
         let called = walks.filter(|series| is_smooth_drift(series, 0.999)).count();
         assert!(called <= 8, "{called} of 2000 random walks");
         let line: Vec<f64> = (0..100).map(f64::from).collect();
-        assert!(WaveError::of(&line).drifts(0.999) && is_smooth_drift(&line, 0.999));
+        assert!(WaveError::of(&line).is_drifting(0.999) && is_smooth_drift(&line, 0.999));
         let decay = |seed| {
             let noise = Noise::new(seed).series(400, 0.0).into_iter().zip(0_u32..);
             noise.map(|(x, at)| 0.01 * x + libm::exp(-f64::from(at) / 200.0)).collect::<Vec<f64>>()

@@ -1,7 +1,7 @@
 //! Averages as text of a few lines.
 
 use super::{Average, AverageOutcome, Estimate, RunAverages};
-use crate::number::{counted, significant, with_bar};
+use crate::number::{count_with_noun, significant, with_error_bar};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -51,12 +51,13 @@ impl fmt::Display for RunAverages {
 }
 
 fn line(average: &Average, estimate: &Estimate) -> String {
-    let samples = counted(estimate.independent_samples as u64, "independent sample", "independent samples");
+    let samples =
+        count_with_noun(estimate.independent_samples as u64, "independent sample", "independent samples");
     let name = match average.of {
         "rate" => format!("rate of {}", average.quantity),
         _ => average.quantity.to_owned(),
     };
     let unit = if average.unit.is_empty() { String::new() } else { format!(" {}", average.unit) };
-    let value = with_bar(estimate.mean, estimate.bar);
+    let value = with_error_bar(estimate.mean, estimate.bar);
     format!("{name} {value}{unit}, {samples} after time {}", significant(estimate.equilibrated_at, 3))
 }

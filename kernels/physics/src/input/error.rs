@@ -1,6 +1,6 @@
 //! Mistakes of an input file, with their locations.
 
-use crate::number::counted;
+use crate::number::count_with_noun;
 use crate::quoted;
 use serde::Serialize;
 
@@ -190,13 +190,13 @@ impl MistakeList {
     ///
     /// # Errors
     /// If there is any mistake.
-    pub fn none_of(self, file: &str) -> Result<(), InputErrors> {
-        let Err(InputErrors(mut errors)) = InputErrors::none_of(self.named) else { return Ok(()) };
+    pub fn ok_without_mistakes(self, file: &str) -> Result<(), InputErrors> {
+        let Err(InputErrors(mut errors)) = InputErrors::ok_if_empty(self.named) else { return Ok(()) };
         if self.more > 0 {
             let spot = Spot { file: file.to_owned(), place: None };
             errors.push(spot.error(
                 MistakeKind::More,
-                format!("{}, not listed", counted(self.more, "more mistake", "more mistakes")),
+                format!("{}, not listed", count_with_noun(self.more, "more mistake", "more mistakes")),
             ));
         }
         Err(InputErrors(errors))
@@ -220,7 +220,7 @@ impl InputErrors {
     ///
     /// # Errors
     /// If there is any mistake.
-    pub fn none_of(mut errors: Vec<InputError>) -> Result<(), InputErrors> {
+    pub fn ok_if_empty(mut errors: Vec<InputError>) -> Result<(), InputErrors> {
         if errors.is_empty() {
             return Ok(());
         }

@@ -47,7 +47,7 @@ impl<'t> InputText<'t> {
     }
 
     /// Location of a byte.
-    pub fn place(&self, offset: usize) -> TextLocation {
+    pub fn location_of_byte(&self, offset: usize) -> TextLocation {
         let line = self.starts.partition_point(|start| *start <= offset);
         let start = self.starts[line.saturating_sub(1)];
         let column = 1 + self.characters(offset) - self.characters(start);
@@ -56,7 +56,7 @@ impl<'t> InputText<'t> {
 
     /// Location of a byte with the name of the file.
     pub fn spot(&self, offset: usize) -> Spot {
-        Spot { file: self.file.to_owned(), place: Some(self.place(offset)) }
+        Spot { file: self.file.to_owned(), place: Some(self.location_of_byte(offset)) }
     }
 
     /// Parses the text as TOML.
@@ -68,13 +68,13 @@ impl<'t> InputText<'t> {
         // One mistake often causes several messages in a line; the first is enough.
         let (mut known, mut errors) = (BTreeSet::new(), MistakeList::default());
         for error in syntax {
-            let place = error.span().map(|span| self.place(span.start));
+            let place = error.span().map(|span| self.location_of_byte(span.start));
             if known.insert(place.map(|place| place.line)) {
                 let spot = Spot { file: self.file.to_owned(), place };
                 errors.push(spot.error(MistakeKind::Syntax, format!("not TOML: {}", error.message())));
             }
         }
-        errors.none_of(self.file)?;
+        errors.ok_without_mistakes(self.file)?;
         Ok(table.into_inner())
     }
 }

@@ -98,7 +98,7 @@ pub(crate) struct DcdWriter {
 
 impl DcdWriter {
     /// Returns true if a frame is the next of the evenly spaced ones.
-    fn takes(&self, step: u64) -> bool {
+    fn is_next_frame(&self, step: u64) -> bool {
         self.is_even && step.is_multiple_of(self.spacing.steps) && self.next.is_none_or(|next| next == step)
     }
 }
@@ -150,7 +150,7 @@ impl Sink for DcdWriter {
 
     /// Adds a frame, and the heading before the first; omits a frame that is not evenly spaced.
     fn write(&mut self, frame: Positions) -> io::Result<()> {
-        if !self.takes(frame.step) {
+        if !self.is_next_frame(frame.step) {
             return Ok(());
         }
         let mut bytes = Vec::with_capacity(HEADING + 64 + 3 * (8 + 4 * frame.places.len()));

@@ -102,7 +102,7 @@ impl GrowingFile {
     /// If the path exists, or the system refuses to write it.
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, FileError> {
         let path = path.into();
-        let file = created(&path)?;
+        let file = create_new_file(&path)?;
         Ok(GrowingFile { path, out: BufWriter::new(ChecksummedFile::from(file)) })
     }
 
@@ -112,7 +112,7 @@ impl GrowingFile {
     /// If the bytes before the mark have changed, the file is a link, or the system refuses to read or write it.
     pub fn resume(path: impl Into<PathBuf>, mark: FileMark) -> Result<Self, GrowingFileError> {
         let path = path.into();
-        let mut summed = ChecksummedFile::from(reopened(&path, mark)?);
+        let mut summed = ChecksummedFile::from(reopen_at_mark(&path, mark)?);
         summed.read_up_to(mark.bytes).map_err(FileError::at(&path, "reading"))?;
         let found = summed.mark().checksum;
         if found != mark.checksum {
@@ -172,19 +172,19 @@ impl GrowingFile {
     pub fn sync(&mut self) -> Result<FileMark, FileError> {
         self.out.flush().map_err(FileError::at(&self.path, "writing"))?;
         let summed = self.out.get_ref();
-        synced(&self.path, &summed.file, summed.bytes)?;
+        sync_and_check(&self.path, &summed.file, summed.bytes)?;
         Ok(summed.mark())
     }
 }
 
 /// Creates an empty file where none exists.
-pub(super) fn created(path: &Path) -> Result<File, FileError> {
+pub(super) fn create_new_file(path: &Path) -> Result<File, FileError> {
     let created = OpenOptions::new().read(true).write(true).create_new(true).open(path);
     created.map_err(FileError::at(path, "creating"))
 }
 
 /// Opens the file at `path`. It must be an ordinary file, not a link, and at least as long as at a mark.
-pub(super) fn reopened(path: &Path, mark: FileMark) -> Result<File, GrowingFileError> {
+pub(super) fn reopen_at_mark(path: &Path, mark: FileMark) -> Result<File, GrowingFileError> {
     let expected = mark.bytes;
     let file = match OpenOptions::new().read(true).write(true).open(path) {
         Err(cause) if cause.kind() == ErrorKind::NotFound => {
@@ -203,18 +203,18 @@ pub(super) fn reopened(path: &Path, mark: FileMark) -> Result<File, GrowingFileE
 }
 
 /// Syncs a file to the disk and checks that it has `written` bytes and is still the one at `path`.
-pub(super) fn synced(path: &Path, file: &File, written: u64) -> Result<(), FileError> {
+pub(super) fn sync_and_check(path: &Path, file: &File, written: u64) -> Result<(), FileError> {
     let at = || FileError::at(path, "writing");
     file.sync_data().map_err(at())?;
     if !is_name_of(path, file).map_err(at())? {
         let cause = io::Error::new(ErrorKind::NotFound, "it was removed or replaced while the run wrote it");
         return Err(at()(cause));
     }
-    is_as_long_as_written(file, written).map_err(at())
+    check_length_written(file, written).map_err(at())
 }
 
 /// Checks that nothing else has changed the length of a file: further writing would leave a hole or part of another's bytes.
-pub(super) fn is_as_long_as_written(file: &File, written: u64) -> io::Result<()> {
+pub(super) fn check_length_written(file: &File, written: u64) -> io::Result<()> {
     let found = file.metadata()?.len();
     if found == written {
         return Ok(());
@@ -266,7 +266,7 @@ impl ChecksummedFile {
 
 impl Write for ChecksummedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        is_as_long_as_written(&self.file, self.bytes)?;
+        check_length_written(&self.file, self.bytes)?;
         let written = self.file.write(bytes)?;
         self.checksum.update(&bytes[..written]);
         self.bytes += written as u64;

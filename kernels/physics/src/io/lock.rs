@@ -77,7 +77,7 @@ impl Lock {
             if !is_lock_text(&text(&file).map_err(at())?) {
                 return Err(FolderError::in_the_way(path));
             }
-            sign(&file).map_err(at())?;
+            write_holder(&file).map_err(at())?;
             return Ok(Lock { path: path.to_owned(), file, held });
         }
     }
@@ -104,7 +104,7 @@ impl Drop for Lock {
 }
 
 /// Writes the holder of the lock into its file.
-fn sign(mut file: &File) -> io::Result<()> {
+fn write_holder(mut file: &File) -> io::Result<()> {
     file.set_len(0)?;
     file.rewind()?;
     let (process, host) = (std::process::id(), gethostname::gethostname());

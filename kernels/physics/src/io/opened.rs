@@ -81,18 +81,18 @@ impl<S: Sink> ThreadedSink<S> {
             self.thread = Some(Writing { entries, thread });
         }
         let sent = self.thread.as_ref().map(|writing| writing.entries.send(entry));
-        sent.and_then(Result::ok).ok_or_else(gone)
+        sent.and_then(Result::ok).ok_or_else(thread_has_ended)
     }
 
     /// Returns the sink after everything added is written.
-    fn here(&mut self) -> io::Result<&mut S> {
+    fn joined_sink(&mut self) -> io::Result<&mut S> {
         if let Some(Writing { entries, thread }) = self.thread.take() {
             drop(entries);
-            let (sink, written) = thread.join().map_err(|_| gone())?;
+            let (sink, written) = thread.join().map_err(|_| thread_has_ended())?;
             self.sink = Some(sink);
             written?;
         }
-        self.sink.as_mut().ok_or_else(gone)
+        self.sink.as_mut().ok_or_else(thread_has_ended)
     }
 
     fn failed(&self, cause: io::Error) -> FileError {
@@ -105,13 +105,13 @@ impl<S: Sink> ThreadedSink<S> {
     }
 }
 
-fn gone() -> io::Error {
+fn thread_has_ended() -> io::Error {
     io::Error::other("the writing thread has ended")
 }
 
 impl<S: Sink> OpenSink for ThreadedSink<S> {
     fn cut(&mut self) -> Result<(), FileError> {
-        match self.here() {
+        match self.joined_sink() {
             Ok(sink) => sink.cut(),
             Err(cause) => Err(self.failed(cause)),
         }
@@ -123,13 +123,15 @@ impl<S: Sink> OpenSink for ThreadedSink<S> {
         };
         let added = match S::DUE {
             WriteOccasion::Frame => self.send(entry),
-            WriteOccasion::Events | WriteOccasion::Row => self.here().and_then(|sink| sink.write(entry)),
+            WriteOccasion::Events | WriteOccasion::Row => {
+                self.joined_sink().and_then(|sink| sink.write(entry))
+            }
         };
         added.map(|()| true).map_err(|cause| self.failed(cause))
     }
 
     fn mark(&mut self) -> Result<FileMark, FileError> {
-        match self.here() {
+        match self.joined_sink() {
             Ok(sink) => sink.mark(),
             Err(cause) => Err(self.failed(cause)),
         }
@@ -139,7 +141,7 @@ impl<S: Sink> OpenSink for ThreadedSink<S> {
 impl<S: Sink> Drop for ThreadedSink<S> {
     /// Completes all writes before the folder is used otherwise.
     fn drop(&mut self) {
-        drop(self.here());
+        drop(self.joined_sink());
     }
 }
 

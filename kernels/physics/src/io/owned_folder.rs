@@ -107,7 +107,7 @@ impl FolderKind {
     ///
     /// # Errors
     /// [`FolderError`] if it contains files, but none of ours, or if its list is damaged.
-    pub(crate) fn listed(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
+    pub(crate) fn listed_names(&self, folder: &Path) -> Result<Option<BTreeSet<String>>, FolderError> {
         let Some(mut names) = names_in(folder)? else { return Ok(None) };
         let (listed, list, below) = match self.holds {
             FolderContent::Files { is_shared: true, .. } => return self.read_if_ours(folder),
@@ -140,12 +140,12 @@ impl FolderKind {
         let path = folder.join(name);
         match marked.iter().find(|(own, _)| *own == name) {
             Some((_, mark)) => is_marked(&path, mark),
-            None => Ok(self.alone_in(&path)?.is_some_and(|names| !names.is_empty())),
+            None => Ok(self.own_files_in(&path)?.is_some_and(|names| !names.is_empty())),
         }
     }
 
     /// Names of all files in a folder of own files only; none if it does not exist.
-    fn alone_in(&self, folder: &Path) -> Result<Option<Vec<String>>, FolderError> {
+    fn own_files_in(&self, folder: &Path) -> Result<Option<Vec<String>>, FolderError> {
         if folder.symlink_metadata().is_ok_and(|there| !there.is_dir()) {
             return Err(FolderError::in_the_way(folder));
         }
@@ -222,7 +222,7 @@ impl OwnedFolder {
     /// [`FolderError`] if existing files are not ours, or another process writes there.
     pub fn open(path: &Path, kind: FolderKind, wanted: &[String]) -> Result<OwnedFolder, FolderError> {
         let listed = || {
-            let listed = kind.listed(path)?;
+            let listed = kind.listed_names(path)?;
             wanted.iter().try_for_each(|name| kind.owns(path, name).map(drop))?;
             Ok::<_, FolderError>(listed)
         };
@@ -331,7 +331,7 @@ impl OwnedFolder {
     ///
     /// # Errors
     /// If another program has removed one meanwhile.
-    pub(crate) fn still_has(&self, names: &[&str]) -> Result<(), FolderError> {
+    pub(crate) fn check_still_there(&self, names: &[&str]) -> Result<(), FolderError> {
         let lock = self.lock.iter().find(|lock| !lock.is_there()).map(|_| self.kind.lock);
         let gone = names.iter().copied().find(|name| !is_file(&self.file(name))).or(lock);
         gone.map_or(Ok(()), |name| {
@@ -352,7 +352,7 @@ impl OwnedFolder {
         files: impl IntoIterator<Item = (&'f str, &'f [u8])>,
     ) -> Result<PathBuf, FolderError> {
         let folder = self.file(name);
-        let own = self.kind.alone_in(&folder)?;
+        let own = self.kind.own_files_in(&folder)?;
         let part = self.temporary_folder()?;
         for (name, bytes) in files {
             let file = part.path().join(name);
@@ -394,7 +394,7 @@ impl OwnedFolder {
                 continue;
             }
             for folder in [left.join(ASIDE), left].iter().filter(|folder| is_folder(folder)) {
-                if let Ok(Some(own)) = self.kind.alone_in(folder) {
+                if let Ok(Some(own)) = self.kind.own_files_in(folder) {
                     self.kind.remove(folder, &own)?;
                 }
             }
@@ -424,7 +424,7 @@ mod tests {
         let list = folder.path().join("a.files");
         for name in ["../a.svg", "b/a.svg", "/a.svg", "./a.svg", "a.svg/.", "a.tex", ""] {
             fs::write(&list, format!("pictures 1\n{name}\n")).unwrap();
-            let damaged = alone.listed(folder.path()).unwrap_err();
+            let damaged = alone.listed_names(folder.path()).unwrap_err();
             assert!(matches!(damaged, FolderError::List { line: 2, .. }), "{name}: {damaged}");
             let mut owned = OwnedFolder::open(folder.path(), shared, &[]).unwrap();
             let refused = owned.claim(["a.svg"], false).unwrap_err();

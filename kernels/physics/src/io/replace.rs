@@ -48,7 +48,7 @@ pub fn replace(
 ///
 /// # Errors
 /// If `path` exists and `overwrite` is false, or the system refuses to write the file; then the old file stays.
-pub fn put(path: &Path, text: &str, overwrite: bool) -> io::Result<()> {
+pub fn write_atomically_new(path: &Path, text: &str, overwrite: bool) -> io::Result<()> {
     let file = written_beside(path, |out| out.write_all(text.as_bytes()))?;
     let placed = if overwrite { file.persist(path) } else { file.persist_noclobber(path) };
     placed.map(drop).map_err(|refused| refused.error)
@@ -58,7 +58,7 @@ pub fn put(path: &Path, text: &str, overwrite: bool) -> io::Result<()> {
 ///
 /// # Errors
 /// [`FolderError::Exists`] with advice, or [`FolderError::NoFile`].
-pub fn may_put(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(), FolderError> {
+pub fn check_may_write(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(), FolderError> {
     match path.symlink_metadata() {
         Ok(_) if !overwrite => Err(FolderError::Exists(path.to_owned(), remedy)),
         // A link is replaced, not followed.
@@ -73,7 +73,7 @@ pub fn may_put(path: &Path, overwrite: bool, remedy: &'static str) -> Result<(),
 ///
 /// # Errors
 /// The system's error.
-pub fn try_beside(path: &Path) -> io::Result<()> {
+pub fn check_folder_writable(path: &Path) -> io::Result<()> {
     temporary(0o666).tempfile_in(folder_of(path)).map(drop)
 }
 

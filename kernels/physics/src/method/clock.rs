@@ -56,7 +56,7 @@ pub enum Until {
 
 impl Until {
     /// True once the moment is reached.
-    pub fn has_come(self, clock: &Clock) -> bool {
+    pub fn has_been_reached(self, clock: &Clock) -> bool {
         match self {
             Until::Steps(steps) => clock.steps >= steps,
             Until::Time(time) => clock.time >= time,
@@ -65,7 +65,7 @@ impl Until {
     }
 
     /// True once the moment is exceeded.
-    pub(crate) fn has_passed(self, clock: &Clock) -> bool {
+    pub(crate) fn is_exceeded(self, clock: &Clock) -> bool {
         match self {
             Until::Steps(steps) => clock.steps > steps,
             Until::Time(time) => clock.time > time,
@@ -217,7 +217,7 @@ impl Schedule {
     /// Number of snapshots in the whole run: the start, those that are due, and the end.
     pub fn snapshot_count(&self) -> Option<u64> {
         let (times, ends) = self.snapshots.times(self.until)?;
-        let is_over = self.until.has_come(&Clock::default());
+        let is_over = self.until.has_been_reached(&Clock::default());
         Some(times.saturating_add(1 + u64::from(!ends && !is_over)))
     }
 }
@@ -240,7 +240,7 @@ mod tests {
             assert!(next > now && next < now + 0.11, "{now} {next}");
             now = next;
         }
-        assert!(Until::Steps(5).has_come(&at(5, 0.0)) && !Until::Steps(5).has_passed(&at(5, 0.0)));
+        assert!(Until::Steps(5).has_been_reached(&at(5, 0.0)) && !Until::Steps(5).is_exceeded(&at(5, 0.0)));
         assert_eq!(Until::Time(2.0).progress(&at(0, 0.5)), (250_000, 1_000_000));
     }
 

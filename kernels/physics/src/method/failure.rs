@@ -149,7 +149,7 @@ impl PhysicsFailure {
     }
 
     /// Moment, problem and particles in a sentence.
-    pub fn what(&self) -> String {
+    pub fn what_and_when(&self) -> String {
         match self.at {
             Some(clock) => format!("{clock}: {}", self.message),
             None => self.message.clone(),
@@ -177,7 +177,7 @@ impl PhysicsFailure {
     ) -> Result<S::Ok, S::Error> {
         let Some(failure) = failure else { return serializer.serialize_none() };
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("message", &failure.what())?;
+        map.serialize_entry("message", &failure.what_and_when())?;
         map.serialize_entry("remedy", &failure.remedy)?;
         failure.data().iter().try_for_each(|(name, value)| map.serialize_entry(name, value))?;
         map.end()
@@ -186,7 +186,7 @@ impl PhysicsFailure {
 
 impl fmt::Display for PhysicsFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}\n  help: {}", self.what(), self.remedy)
+        write!(f, "{}\n  help: {}", self.what_and_when(), self.remedy)
     }
 }
 
@@ -250,9 +250,13 @@ mod tests {
         let whole = PhysicsFailure::in_json(&Some(failure), serde_json::value::Serializer).unwrap();
         assert_eq!((&whole["remedy"], &whole["kind"]), (&json!("halve dt"), &json!("not-finite")));
         // A method of events takes no steps.
-        assert!(at(Clock { steps: 0, time: 0.5, events: 9 }).what().starts_with("event 9, time 0.5: first"));
+        assert!(
+            at(Clock { steps: 0, time: 0.5, events: 9 })
+                .what_and_when()
+                .starts_with("event 9, time 0.5: first")
+        );
         let refused = PhysicsFailure::from(ProgramError::NoSuchInstructionSet("avx512"));
-        assert_eq!((refused.what().as_str(), refused.at), ("this processor has no avx512", None));
+        assert_eq!((refused.what_and_when().as_str(), refused.at), ("this processor has no avx512", None));
         assert!(refused.remedy.contains("instruction_set"));
     }
 }

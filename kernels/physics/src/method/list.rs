@@ -1,7 +1,7 @@
 //! List of methods. Each is a folder beside this file and a line of this list.
 
 use super::entry::{MethodEntry, ObservedQuantity, Prepared, QuantityKind};
-use super::start_temperature::{asked_temperature, start_temperature};
+use super::start_temperature::{requested_temperature, start_temperature};
 use super::{hard_disks, langevin, lattice_md, nbody};
 use crate::quoted::quoted;
 use crate::scene::{
@@ -57,13 +57,13 @@ pub fn prepare(
     let unlisted = || values.spot(&METHOD).error(MistakeKind::Unknown, "there is no such method");
     let entry = method(methods, values.method()).ok_or_else(unlisted)?;
     let wrong = wrong_target(&values, entry);
-    let asked = asked_temperature(&values, &entry.vocabulary.keys);
+    let asked = requested_temperature(&values, &entry.vocabulary.keys);
     let spot = values.spot(&STRUCTURE);
     match ((entry.prepare)(values), wrong) {
-        (Ok(mut prepared), None) => match not_there(&prepared) {
+        (Ok(mut prepared), None) => match missing_precondition(&prepared) {
             Some(why) => Err(spot.error(MistakeKind::Contradiction, why).into()),
             None => {
-                prepared.memory.needed += memory_of_looks(&prepared);
+                prepared.memory.needed += sampling_memory(&prepared);
                 prepared.facts.extend(asked.and_then(|asked| start_temperature(asked, &prepared)));
                 Ok((prepared, entry))
             }
@@ -74,13 +74,13 @@ pub fn prepare(
 }
 
 /// Memory that sampling the structure takes (bytes).
-fn memory_of_looks(prepared: &Prepared) -> u64 {
+fn sampling_memory(prepared: &Prepared) -> u64 {
     let asked: Vec<_> = prepared.output.structure.iter().filter_map(|name| observable(name)).collect();
     structure::bytes(&asked, prepared.particles().grain_count(), prepared.schedule.row_count())
 }
 
 /// Reason why a requested structure quantity cannot be computed.
-fn not_there(prepared: &Prepared) -> Option<String> {
+fn missing_precondition(prepared: &Prepared) -> Option<String> {
     let why = |observable: &StructureObservable| match observable.seen {
         SamplingKind::Once { asks: SampleData::Waves, .. } if prepared.domain.periodic() == [false; 2] => {
             Some("needs a periodic side for its waves")

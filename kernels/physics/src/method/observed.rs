@@ -50,7 +50,7 @@ pub(super) fn values<S>(observables: &[MethodObservable<S>], seen: &S) -> Vec<f6
 /// # Panics
 /// If no quantity has this name.
 #[expect(clippy::panic, reason = "a constant: a name that is misspelt does not compile")]
-pub(crate) const fn place(quantities: &[ObservedQuantity], name: &str) -> usize {
+pub(crate) const fn quantity_index(quantities: &[ObservedQuantity], name: &str) -> usize {
     let mut at = 0;
     while at < quantities.len() {
         if is_same(quantities[at].name, name) {
@@ -99,7 +99,7 @@ pub fn observed<const N: usize>(
 ///
 /// # Errors
 /// [`UnknownName`] if the summary has no number of this name.
-pub fn summed_up(summary: &Map<String, Value>, name: &str) -> Result<f64, UnknownName> {
+pub fn summary_number(summary: &Map<String, Value>, name: &str) -> Result<f64, UnknownName> {
     let numbers = summary.iter().filter(|(_, value)| value.is_number()).map(|(name, _)| name.as_str());
     let unknown = || UnknownName::new("number of the summary", name, numbers);
     summary.get(name).and_then(Value::as_f64).ok_or_else(unknown)
@@ -120,11 +120,11 @@ mod tests {
         assert_eq!(observed(QUANTITIES, &[1.0, 2.0], ["flow", "time"]), Ok([2.0, 1.0]));
         let said = observed(QUANTITIES, &[1.0, 2.0], ["flwo"]).unwrap_err().to_string();
         assert_eq!(said, "unknown quantity `flwo`\n  help: use one of time, flow");
-        assert_eq!(place(QUANTITIES, "flow"), 1);
-        assert!(std::panic::catch_unwind(|| place(QUANTITIES, "flo")).is_err());
+        assert_eq!(quantity_index(QUANTITIES, "flow"), 1);
+        assert!(std::panic::catch_unwind(|| quantity_index(QUANTITIES, "flo")).is_err());
         let summary: Map<String, Value> = serde_json::from_str(r#"{"remaps": 3, "mask": "min"}"#).unwrap();
-        assert_eq!(summed_up(&summary, "remaps"), Ok(3.0));
-        let said = summed_up(&summary, "remap").unwrap_err().to_string();
+        assert_eq!(summary_number(&summary, "remaps"), Ok(3.0));
+        let said = summary_number(&summary, "remap").unwrap_err().to_string();
         assert!(said.contains("`remap`") && said.ends_with("one of remaps"), "{said}");
     }
 

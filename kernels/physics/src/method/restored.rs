@@ -101,7 +101,7 @@ impl Clock {
     ///
     /// # Errors
     /// Says what is wrong.
-    pub fn of_steps(&self, dt: f64) -> Result<(), String> {
+    pub fn check_step_clock(&self, dt: f64) -> Result<(), String> {
         let Clock { steps, time, events } = *self;
         let expected = steps as f64 * dt;
         if steps > MOST || time != expected {
@@ -117,7 +117,7 @@ impl Clock {
     ///
     /// # Errors
     /// Says what is wrong.
-    pub(crate) fn of_events(&self) -> Result<(), String> {
+    pub(crate) fn check_event_clock(&self) -> Result<(), String> {
         let Clock { steps, time, events } = *self;
         if steps > 0 {
             return Err(format!("it counts {steps} steps, but this method has none"));

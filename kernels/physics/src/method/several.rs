@@ -14,8 +14,8 @@ pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 ///
 /// # Errors
 /// [`Failure`] if there are several.
-pub(crate) fn refuse_several_ranks(why: &str) -> Result<(), PhysicsFailure> {
-    match ranks::crew().count() {
+pub(crate) fn reject_several_ranks(why: &str) -> Result<(), PhysicsFailure> {
+    match ranks::current_backend().count() {
         1 => Ok(()),
         count => {
             let what = format!("cannot run on {count} ranks: {why}");
@@ -26,7 +26,7 @@ pub(crate) fn refuse_several_ranks(why: &str) -> Result<(), PhysicsFailure> {
 }
 
 /// Failure of the remaining ranks after one is lost.
-pub(crate) fn ended(lost: RankError, at: Clock) -> PhysicsFailure {
+pub(crate) fn rank_loss_failure(lost: RankError, at: Clock) -> PhysicsFailure {
     let remedy =
         "see its last message; the last checkpoint is complete: resume with --resume, on any number of ranks";
     PhysicsFailure::new(RANK_ENDED, lost.to_string(), remedy).at(at)

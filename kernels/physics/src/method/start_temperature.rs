@@ -14,9 +14,9 @@ const WORTH_A_WORD: f64 = 0.01;
 pub(crate) const START_TEMPERATURE: &str = "start_temperature";
 
 /// Temperature requested for a generated start; none where a bath or a wall sets the temperature.
-pub(super) fn asked_temperature(values: &SceneValues, keys: &KeySet) -> Option<f64> {
+pub(super) fn requested_temperature(values: &SceneValues, keys: &KeySet) -> Option<f64> {
     let is_kept = keys.keys().any(|key| key.name.ends_with("_temperature") && values.is_used(key));
-    let is_asked = !is_kept && values.gives(&TEMPERATURE) && values.is_used(&TEMPERATURE);
+    let is_asked = !is_kept && values.is_given(&TEMPERATURE) && values.is_used(&TEMPERATURE);
     values.number(&TEMPERATURE).filter(|asked| is_asked && *asked > 0.0)
 }
 

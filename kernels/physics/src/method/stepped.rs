@@ -57,7 +57,7 @@ pub trait Stepwise: Send + Sized {
     fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, PhysicsFailure>;
 
     /// Applies a function to the observation of this moment.
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&Self::Seen) -> R) -> R;
+    fn with_observation<R>(run: &Stepped<Self>, work: impl FnOnce(&Self::Seen) -> R) -> R;
 
     /// As [`Simulation::per_particle`], where the method has more data than the state.
     fn per_particle(run: &Stepped<Self>) -> &dyn PerParticle {
@@ -73,7 +73,7 @@ pub trait Stepwise: Send + Sized {
     }
 
     /// Adds to the columns of the state what else the future depends on, and all counts.
-    fn keep(run: &Stepped<Self>, kept: &mut Snapshot);
+    fn save_into(run: &Stepped<Self>, kept: &mut Snapshot);
 
     /// As [`Simulation::restore`], after the clock has been checked to count steps.
     ///
@@ -136,7 +136,7 @@ impl<M: Stepwise> Stepped<M> {
     }
 
     fn step_until(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), PhysicsFailure> {
-        while !until.iter().any(|moment| moment.has_come(&self.clock())) {
+        while !until.iter().any(|moment| moment.has_been_reached(&self.clock())) {
             if interrupted.load(Ordering::Relaxed) || !M::step(self, interrupted)? {
                 break;
             }
@@ -145,7 +145,7 @@ impl<M: Stepwise> Stepped<M> {
     }
 
     /// Returns a sample, or none where a rank is lost.
-    fn of_all_ranks<T>(&self, seen: T) -> Option<T> {
+    fn unless_rank_lost<T>(&self, seen: T) -> Option<T> {
         self.state.check_ranks().ok().map(|()| seen)
     }
 }
@@ -184,18 +184,18 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let seen = M::with_seen(self, |seen| values(M::OBSERVABLES, seen));
-        self.of_all_ranks(seen).unwrap_or_else(|| vec![f64::NAN; M::OBSERVABLES.len()])
+        let seen = M::with_observation(self, |seen| values(M::OBSERVABLES, seen));
+        self.unless_rank_lost(seen).unwrap_or_else(|| vec![f64::NAN; M::OBSERVABLES.len()])
     }
 
     fn snapshot(&self) -> Snapshot {
         let mut kept = Snapshot { columns: self.state.columns(), ..Snapshot::default() };
-        M::keep(self, &mut kept);
-        self.of_all_ranks(kept).unwrap_or_default()
+        M::save_into(self, &mut kept);
+        self.unless_rank_lost(kept).unwrap_or_default()
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
-        clock.of_steps(self.state.elapsed().dt)?;
+        clock.check_step_clock(self.state.elapsed().dt)?;
         M::restore(self, clock, snapshot)
     }
 
@@ -218,7 +218,7 @@ impl<M: Stepwise> Simulation for Stepped<M> {
 
     fn summary(&self) -> Map<String, Value> {
         let entries = M::summary(self).into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-        self.of_all_ranks(entries).unwrap_or_default()
+        self.unless_rank_lost(entries).unwrap_or_default()
     }
 
     fn take_events(&mut self) -> String {
@@ -226,10 +226,10 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     }
 
     fn warnings(&self) -> Vec<RunWarning> {
-        self.of_all_ranks(M::warnings(self)).unwrap_or_default()
+        self.unless_rank_lost(M::warnings(self)).unwrap_or_default()
     }
 
     fn in_words(&self) -> String {
-        self.of_all_ranks(M::in_words(self)).unwrap_or_default()
+        self.unless_rank_lost(M::in_words(self)).unwrap_or_default()
     }
 }

@@ -164,7 +164,7 @@ impl ThroughputRun {
         equilibration: u64,
         steps: u64,
     ) -> Result<Self, MeasurementError> {
-        prepared.memory.clone().on(ranks::crew()).fits(bench.name)?;
+        prepared.memory.clone().for_crew(ranks::current_backend()).fits(bench.name)?;
         let begun = Instant::now();
         let simulation = prepared.start(StartPurpose::Measurement)?;
         let start = begun.elapsed().as_secs_f64();
@@ -200,7 +200,7 @@ impl ThroughputRun {
     }
 
     /// Wall seconds of work beside the steps: the start, a row of observables, a copy of all particles, and a snapshot.
-    pub fn beside(&self) -> [f64; 4] {
+    pub fn overhead_seconds(&self) -> [f64; 4] {
         let least = |work: &dyn Fn()| {
             let once = |_| {
                 let begun = Instant::now();
@@ -270,7 +270,7 @@ impl Reported for MeasurementError {
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         match self {
             MeasurementError::Scene(errors) => Some(errors),
             MeasurementError::Physics(failure) => Some(failure),

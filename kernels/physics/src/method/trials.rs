@@ -271,7 +271,7 @@ mod tests {
         let values = SceneValues::load("two-discs", &given, &known).unwrap();
         let key = |name| method(METHODS, values.method()).unwrap().vocabulary.keys.key("integrator", name);
         let (kind, carried) = (key("kind").unwrap(), key("values").unwrap());
-        assert!(!values.gives(carried));
+        assert!(!values.is_given(carried));
         let again = values.with(&Overrides::new().set(kind, "gear")).unwrap();
         assert_eq!(again.given(carried), Some(&crate::scene::KeyValue::Whole(5)));
     }

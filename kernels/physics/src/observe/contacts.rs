@@ -57,9 +57,9 @@ impl<'a> WrappedDiscs<'a> {
     /// Wraps the particles and sorts them for neighbour searches.
     pub(super) fn new(particles: &'a Particles, domain: &Domain) -> Self {
         let all = particles.all();
-        let places: Vec<[f64; 2]> = all.iter().map(|disc| domain.wrapped(disc.place())).collect();
+        let places: Vec<[f64; 2]> = all.iter().map(|disc| domain.wrapped(disc.planar_position())).collect();
         let reach = 2.0 * particles.radii().map_or(1.0, |[_, largest]| largest);
-        let near = NeighbourSearch::among(*domain, places.iter().copied(), reach);
+        let near = NeighbourSearch::over_positions(*domain, places.iter().copied(), reach);
         WrappedDiscs { domain: *domain, all, places, near }
     }
 
@@ -73,7 +73,9 @@ impl<'a> WrappedDiscs<'a> {
         let mut near: Vec<usize> = Vec::new();
         for i in grains {
             near.clear();
-            near.extend(self.near.of(self.places[i]).map(|(j, _)| j as usize).filter(|&j| j > i));
+            near.extend(
+                self.near.candidates_near(self.places[i]).map(|(j, _)| j as usize).filter(|&j| j > i),
+            );
             near.sort_unstable();
             for &j in &near {
                 let [dx, dy] = self.domain.displacement(self.places[i], self.places[j]);

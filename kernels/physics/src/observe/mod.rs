@@ -104,7 +104,7 @@ impl ObservationSums {
             let grain = &particles.all()[number];
             sums.add(scenery, grain, grain.planar_velocity(), grain.omega, || discs.place(number));
             if scenery.gravity != [0.0; 2] {
-                sums.gravity_work += work(number, grain, grain.place());
+                sums.gravity_work += work(number, grain, grain.planar_position());
             }
         }
         ObservationSums { grains: sums, contacts: ContactSums::over(grains, discs, &scenery.contact) }

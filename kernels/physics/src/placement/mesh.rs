@@ -9,7 +9,7 @@ use stripmine_kernels::noise::{RandomPurpose, Stream};
 ///
 /// # Panics
 /// If there are fewer sites.
-pub(crate) fn mesh([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
+pub(crate) fn random_mesh_sites([columns, rows]: [usize; 2], count: usize, seed: u64) -> Vec<[usize; 2]> {
     let places = columns * rows;
     assert!(count <= places, "{count} of {places} sites");
     let mut random = Stream::new(seed, RandomPurpose::Placement, 0);
@@ -40,7 +40,7 @@ mod tests {
                 }
                 let expected: Vec<[usize; 2]> =
                     list[..count].iter().map(|place| [place % columns, place / columns]).collect();
-                assert_eq!(mesh([columns, rows], count, seed), expected);
+                assert_eq!(random_mesh_sites([columns, rows], count, seed), expected);
             }
         }
     }
@@ -48,13 +48,13 @@ mod tests {
     /// Sites are drawn at most once, and all of them if all are asked for. Each is equally likely in each turn: χ² of 9999 draws of 3 of 6.
     #[test]
     fn sites_are_distinct_and_equally_likely() {
-        let mut all = mesh([7, 5], 35, 4);
+        let mut all = random_mesh_sites([7, 5], 35, 4);
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), 35);
         let (mut counts, draws) = ([[0.0; 6]; 3], 9999);
         for seed in 0..draws {
-            let places = mesh([3, 2], 3, seed);
+            let places = random_mesh_sites([3, 2], 3, seed);
             for (turn, [column, row]) in places.into_iter().enumerate() {
                 counts[turn][column + 3 * row] += 1.0;
             }

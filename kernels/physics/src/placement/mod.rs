@@ -4,11 +4,11 @@ mod mesh;
 mod random;
 mod rows;
 
-pub(crate) use mesh::mesh;
+pub(crate) use mesh::random_mesh_sites;
 pub use random::Second;
-pub(crate) use random::stir;
-pub(crate) use random::{RandomPlacement, random};
-pub(crate) use rows::{WallRow, row};
+pub(crate) use random::set_gaussian_velocities;
+pub(crate) use random::{RandomPlacement, place_randomly};
+pub(crate) use rows::{WallRow, wall_row};
 
 use crate::particles::{Particle, ParticleKind, Particles, in_space};
 use rand::RngExt;

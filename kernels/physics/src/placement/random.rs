@@ -78,7 +78,7 @@ const TRIES: usize = 200_000;
 ///
 /// # Errors
 /// [`Jammed`] if a disc finds no free space.
-pub(crate) fn random(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, PlacementJammed> {
+pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, PlacementJammed> {
     let RandomPlacement { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } =
         *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
@@ -86,7 +86,7 @@ pub(crate) fn random(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, Pla
     let mut near = NeighbourSearch::new(domain, (2.0 * largest).max(largest + obstacle));
     let mut circles: Vec<f64> = Vec::with_capacity(obstacles.len() + count.min(1 << 20));
     for disc in obstacles {
-        near.add(circles.len() as u32, domain.wrapped(disc.place()));
+        near.add(circles.len() as u32, domain.wrapped(disc.planar_position()));
         circles.push(disc.radius);
     }
     let mut discs = Vec::new();
@@ -108,7 +108,7 @@ pub(crate) fn random(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, Pla
             domain.wrapped(position)
         };
         let free = |position: &[f64; 2]| {
-            near.of(*position)
+            near.candidates_near(*position)
                 .all(|(other, there)| domain.distance(*position, there) > radius + circles[other as usize])
         };
         let position = (0..TRIES).map(|_| draw()).find(free).ok_or(jammed)?;
@@ -167,7 +167,12 @@ impl Distribution<f64> for TruncatedNormal {
 
 /// Gives discs Gaussian velocities of standard deviation `deviation(disc)` (length/time) for each component. They depend on seed and id alone, and
 /// have no net momentum if `balanced`.
-pub(crate) fn stir(discs: &mut [Particle], seed: u64, balanced: bool, deviation: impl Fn(&Particle) -> f64) {
+pub(crate) fn set_gaussian_velocities(
+    discs: &mut [Particle],
+    seed: u64,
+    balanced: bool,
+    deviation: impl Fn(&Particle) -> f64,
+) {
     for disc in discs.iter_mut() {
         disc.velocity =
             in_space(normals(seed, RandomPurpose::Placement, disc.id, 1).map(|v| v * deviation(disc)));
@@ -204,14 +209,14 @@ mod tests {
     #[test]
     fn two_kinds_are_mixed_evenly() {
         let second = Second { radius: 0.7, share: 0.25 };
-        let discs = random(&RandomPlacement { count: 40, spread: 0.0, second, ..filling() }).unwrap();
+        let discs = place_randomly(&RandomPlacement { count: 40, spread: 0.0, second, ..filling() }).unwrap();
         let larger: Vec<u32> = discs.iter().filter(|disc| disc.radius == 0.7).map(|disc| disc.id).collect();
         assert_eq!(larger, [4, 8, 12, 16, 20, 24, 28, 32, 36, 40]);
         assert!(discs.iter().all(|disc| (disc.mass / disc.radius.powi(2) - 8.0).abs() < 1e-12));
         assert!((second.mean_square(0.5) - (0.75 * 0.25 + 0.25 * 0.49)).abs() < 1e-15);
         assert_eq!([second.largest(0.5), Second::default().largest(0.5)], [0.7, 0.5]);
         let overlap = |a: &Particle, b: &Particle| {
-            filling().domain.distance(a.place(), b.place()) < a.radius + b.radius
+            filling().domain.distance(a.planar_position(), b.planar_position()) < a.radius + b.radius
         };
         assert!(discs.iter().enumerate().all(|(i, a)| discs[..i].iter().all(|b| !overlap(a, b))));
     }
@@ -219,7 +224,7 @@ mod tests {
     #[test]
     fn random_discs_stay_inside_without_overlap() {
         let filling = filling();
-        let discs = random(&filling).unwrap();
+        let discs = place_randomly(&filling).unwrap();
         assert_eq!(discs.len(), 300);
         for (i, a) in discs.iter().enumerate() {
             assert_eq!(a.id as usize, i + 1);
@@ -228,27 +233,29 @@ mod tests {
             assert!((a.radius / 0.5 - 1.0).abs() <= 0.1);
             assert!((a.mass - 2.0 * (a.radius / 0.5).powi(2)).abs() < 1e-12);
             for b in &discs[..i] {
-                assert!(filling.domain.distance(a.place(), b.place()) > a.radius + b.radius);
+                assert!(
+                    filling.domain.distance(a.planar_position(), b.planar_position()) > a.radius + b.radius
+                );
             }
         }
-        assert_eq!(discs, random(&filling).unwrap());
-        assert_ne!(discs, random(&RandomPlacement { seed: 10, ..filling }).unwrap());
+        assert_eq!(discs, place_randomly(&filling).unwrap());
+        assert_ne!(discs, place_randomly(&RandomPlacement { seed: 10, ..filling }).unwrap());
     }
 
     /// A change of these bits changes every scene with a random start; a new version of `rand` must not cause it unnoticed.
     #[test]
     fn bits_of_a_random_start_are_fixed() {
-        let mut discs = random(&RandomPlacement { count: 40, ..filling() }).unwrap();
-        stir(&mut discs, 9, true, |_| 0.5);
+        let mut discs = place_randomly(&RandomPlacement { count: 40, ..filling() }).unwrap();
+        set_gaussian_velocities(&mut discs, 9, true, |_| 0.5);
         assert_eq!(crate::particles::Particles::new(discs).checksum(), "5ba7c8a9");
     }
 
     #[test]
     fn too_many_discs_are_refused() {
-        let jammed = random(&RandomPlacement { count: 700, ..filling() }).unwrap_err();
+        let jammed = place_randomly(&RandomPlacement { count: 700, ..filling() }).unwrap_err();
         assert!(jammed.asked == 700 && (350..450).contains(&jammed.placed), "{jammed}");
         let narrow = RandomPlacement { room: [[-2.0, 1.0], [28.0, 1.3]], ..filling() };
-        assert_eq!(random(&narrow).unwrap_err().placed, 0);
+        assert_eq!(place_randomly(&narrow).unwrap_err().placed, 0);
     }
 
     /// Variance of a Gaussian cut at ± c standard deviations: 1 − 2 c φ(c)/(2Φ(c) − 1).

@@ -19,7 +19,7 @@ pub(crate) struct WallRow {
 }
 
 /// Discs of a row, with ids from `first_id` on.
-pub(crate) fn row(domain: &Domain, row: &WallRow, first_id: u32) -> Vec<Particle> {
+pub(crate) fn wall_row(domain: &Domain, row: &WallRow, first_id: u32) -> Vec<Particle> {
     let count = (domain.length(0) / row.spacing).round().clamp(1.0, f64::from(u32::MAX / 4)) as u32;
     let spacing = domain.length(0) / f64::from(count);
     let disc = |i: u32| Particle {
@@ -45,12 +45,12 @@ mod tests {
         let domain = Domain::planar([1.0, 0.0], [8.1, 0.1], [true, false]);
         for shift in [0.0, 0.5] {
             let discs =
-                row(&domain, &WallRow { y: 0.03, shift, radius: 0.009, spacing: 0.0271, mass: 1.0 }, 7);
+                wall_row(&domain, &WallRow { y: 0.03, shift, radius: 0.009, spacing: 0.0271, mass: 1.0 }, 7);
             assert_eq!(discs.len(), 299);
             assert_eq!((discs[0].id, discs[298].id), (7, 305));
             let spacing = 8.1 / 299.0;
             for pair in 0..299 {
-                let (a, b) = (discs[pair].place(), discs[(pair + 1) % 299].place());
+                let (a, b) = (discs[pair].planar_position(), discs[(pair + 1) % 299].planar_position());
                 assert!((domain.distance(a, b) - spacing).abs() < 1e-9);
             }
         }

@@ -81,7 +81,7 @@ impl Ranks for ThreadRank {
         if self.rank > 0 { Ok(vec![]) } else { (0..self.count()).map(|rank| self.receive(rank)).collect() }
     }
 
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
+    fn broadcast(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
         let Some(said) = said else { return self.receive(0) };
         (1..self.count()).for_each(|rank| self.send(rank, said.clone()));
         Ok(said)
@@ -114,7 +114,7 @@ mod tests {
                         let all: Vec<Parcel> = (0..count).map(|rank| parcel(&[rank])).collect();
                         assert_eq!(gathered, if own == 0 { all } else { vec![] });
                         let said = (own == 0).then(|| parcel(&[42]));
-                        assert_eq!(ranks.tell(said).unwrap(), parcel(&[42]));
+                        assert_eq!(ranks.broadcast(said).unwrap(), parcel(&[42]));
                     });
                 }
             });
@@ -131,7 +131,10 @@ mod tests {
                     let own = ranks.rank();
                     let all = ranks.gather_messages(own).unwrap();
                     assert_eq!(all, if own == 0 { vec![0, 1, 2] } else { vec![] });
-                    assert_eq!(ranks.tell_message((own == 0).then(|| "go on".to_owned())).unwrap(), "go on");
+                    assert_eq!(
+                        ranks.broadcast_message((own == 0).then(|| "go on".to_owned())).unwrap(),
+                        "go on"
+                    );
                     // The second rank sends a message that is not a number.
                     let sent = if own == 1 { Parcel(vec![7]) } else { Parcel::of(&own) };
                     let all = ranks.gather(sent).unwrap();
@@ -152,8 +155,8 @@ mod tests {
         let ended = Err(RankError::Ended(1));
         assert_eq!(all[0].migrate(vec![Parcel::default(); 3]), ended);
         assert_eq!(all[1].receive(0), Ok(Parcel::default()));
-        assert_eq!(all[0].tell(Some(parcel(&[42]))), Ok(parcel(&[42])));
-        assert_eq!(all[1].tell(None), Ok(parcel(&[42])));
+        assert_eq!(all[0].broadcast(Some(parcel(&[42]))), Ok(parcel(&[42])));
+        assert_eq!(all[1].broadcast(None), Ok(parcel(&[42])));
         all[1].gather(parcel(&[7])).unwrap();
         assert_eq!(all[0].gather(parcel(&[])), ended);
     }

@@ -74,7 +74,7 @@ pub trait Ranks: Send {
     ///
     /// # Errors
     /// [`RankError`]
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError>;
+    fn broadcast(&self, said: Option<Parcel>) -> Result<Parcel, RankError>;
 }
 
 impl dyn Ranks + '_ {
@@ -95,8 +95,11 @@ impl dyn Ranks + '_ {
     ///
     /// # Errors
     /// [`RankError`]
-    pub fn tell_message<T: Serialize + DeserializeOwned>(&self, said: Option<T>) -> Result<T, RankError> {
-        let told = self.tell(said.as_ref().map(Parcel::of))?;
+    pub fn broadcast_message<T: Serialize + DeserializeOwned>(
+        &self,
+        said: Option<T>,
+    ) -> Result<T, RankError> {
+        let told = self.broadcast(said.as_ref().map(Parcel::of))?;
         said.map_or_else(|| told.open(0), Ok)
     }
 }
@@ -128,12 +131,12 @@ thread_local! {
 }
 
 /// Ranks that carry out simulations started now on this thread.
-pub(crate) fn crew() -> RankBackend {
+pub(crate) fn current_backend() -> RankBackend {
     CREW.get()
 }
 
 /// Runs `work`; simulations that it starts on this thread are carried out by `crew`.
-pub fn over<R>(crew: RankBackend, work: impl FnOnce() -> R) -> R {
+pub fn with_backend<R>(crew: RankBackend, work: impl FnOnce() -> R) -> R {
     /// Restores the previous crew, even after a panic.
     struct RestoredBackend(RankBackend);
 
@@ -153,10 +156,10 @@ pub fn over<R>(crew: RankBackend, work: impl FnOnce() -> R) -> R {
 /// # Errors
 /// [`RankError`]
 pub fn dismiss(ranks: &dyn Ranks) -> Result<(), RankError> {
-    ranks.tell_message(Some(None::<()>)).map(drop)
+    ranks.broadcast_message(Some(None::<()>)).map(drop)
 }
 
 /// Waits for the first rank; returns true if it called [`dismiss`] instead of starting a simulation.
 pub fn is_dismissed(ranks: &dyn Ranks) -> bool {
-    ranks.tell_message::<Option<()>>(None) == Ok(None)
+    ranks.broadcast_message::<Option<()>>(None) == Ok(None)
 }

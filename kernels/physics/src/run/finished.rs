@@ -121,7 +121,7 @@ impl Reported for FinishedError {
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         if let FinishedError::Table(error) = self { Some(error) } else { None }
     }
 
@@ -172,7 +172,7 @@ impl FinishedRun {
     }
 
     /// Checks that another run has the same scene with another seed.
-    fn is_joined_by(&self, other: &FinishedRun) -> Result<(), FinishedError> {
+    fn check_joinable(&self, other: &FinishedRun) -> Result<(), FinishedError> {
         let (first, other_folder) = (self.folder.clone(), other.folder.clone());
         if self.physics() == other.physics() {
             return Err(FinishedError::Twice { first, other: other_folder });
@@ -210,7 +210,7 @@ impl FinishedRun {
 /// If two of them have different scenes, or are the same run.
 pub fn averages_of(runs: &[FinishedRun]) -> Result<RunAverages, FinishedError> {
     for (place, run) in runs.iter().enumerate() {
-        runs[..place].iter().try_for_each(|before| before.is_joined_by(run))?;
+        runs[..place].iter().try_for_each(|before| before.check_joinable(run))?;
     }
     Ok(joined(&runs.iter().map(|run| RunAverages::of(&run.rows)).collect::<Vec<_>>()))
 }

@@ -39,6 +39,6 @@ fn is_own(name: &str) -> bool {
 }
 
 /// Files that a run needs to be resumed.
-pub(super) fn needed(has_checkpoint: bool) -> &'static [&'static str] {
+pub(super) fn files_to_resume(has_checkpoint: bool) -> &'static [&'static str] {
     &[LIST, SCENE, CHECKPOINT][..if has_checkpoint { 3 } else { 2 }]
 }

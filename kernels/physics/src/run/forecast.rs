@@ -1,12 +1,12 @@
 //! Forecast of a run before it starts: the step and its limits, the error, the time it takes.
 
-use super::structured::every;
+use super::structured::sampling_strides;
 use crate::memory::in_words;
 use crate::method::{
     Clock, Fact, LimitConsequence, PhysicsFailure, Prepared, START_TEMPERATURE, StartPurpose, StepLimit,
     Until,
 };
-use crate::number::{counted, significant};
+use crate::number::{count_with_noun, significant};
 use crate::scene::{DT, Warning};
 use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,14 +25,19 @@ const FIRST_STRETCH: f64 = 1e-9;
 const MARGIN: f64 = 1.5;
 
 /// Forecast of a scene's step, the same on every host.
-pub fn of_the_step(prepared: &Prepared) -> Vec<Fact> {
+pub fn step_forecast(prepared: &Prepared) -> Vec<Fact> {
     let limits = &prepared.step_limits;
     let mut facts = vec![];
     if !limits.is_empty() {
         facts.push(Fact::data("step_limits", json!(limits)));
     }
     let said = limits.iter().map(|limit| {
-        let words = format!("at most {}, {}; {}", significant(limit.step, 5), multiple(limit), beyond(limit));
+        let words = format!(
+            "at most {}, {}; {}",
+            significant(limit.step, 5),
+            multiple(limit),
+            effect_beyond_limit(limit)
+        );
         Fact { data: None, words: Some((limit.name, words)) }
     });
     facts.extend(said);
@@ -48,7 +53,7 @@ fn multiple(limit: &StepLimit) -> String {
     }
 }
 
-fn beyond(limit: &StepLimit) -> &'static str {
+fn effect_beyond_limit(limit: &StepLimit) -> &'static str {
     match limit.beyond {
         LimitConsequence::Unstable => "errors grow beyond",
         LimitConsequence::Inaccurate => "inaccurate beyond",
@@ -70,20 +75,20 @@ pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
         significant(limit.share, 3),
         significant(limit.step, 5),
         limit.name,
-        beyond(limit)
+        effect_beyond_limit(limit)
     );
     let suggestion = format!("use dt <= {}", significant(limit.step, 3));
     Some(Warning { check: limit.name, share: limit.share, is_refusal: false, key, message, suggestion })
 }
 
 /// Fact about the start of a run.
-pub fn of_the_start(prepared: &Prepared) -> Option<Fact> {
+pub fn start_forecast(prepared: &Prepared) -> Option<Fact> {
     let is_it = |fact: &&Fact| fact.data.as_ref().is_some_and(|(name, _)| *name == START_TEMPERATURE);
     prepared.facts.iter().find(is_it).cloned()
 }
 
 /// Memory needed by the run, and memory available on this host.
-pub fn of_the_memory(prepared: &Prepared) -> Fact {
+pub fn memory_forecast(prepared: &Prepared) -> Fact {
     let memory = &prepared.memory;
     let left = memory.available.map(|available| format!(" of {} left", in_words(available.bytes)));
     let words = in_words(memory.needed) + &left.unwrap_or_default();
@@ -91,7 +96,7 @@ pub fn of_the_memory(prepared: &Prepared) -> Fact {
 }
 
 /// Number of rows and frames, if known in advance, and the strides of structure samples.
-pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
+pub fn output_forecast(prepared: &Prepared) -> Vec<Fact> {
     let schedule = prepared.schedule;
     let counts = [
         ("thermo_rows", "rows of thermo.csv", schedule.row_count()),
@@ -101,7 +106,7 @@ pub fn of_the_files(prepared: &Prepared) -> Vec<Fact> {
     let mut facts: Vec<Fact> =
         known.map(|(name, label, count)| Fact::new(name, count, label, count.to_string())).collect();
     if !prepared.output.structure.is_empty() {
-        let [rows, snapshots] = every(prepared);
+        let [rows, snapshots] = sampling_strides(prepared);
         let words = format!("at every {} and every {}", nth(rows, "row"), nth(snapshots, "snapshot"));
         facts.push(Fact::new("structure_every", json!([rows, snapshots]), "samples of the structure", words));
     }
@@ -122,7 +127,7 @@ fn nth(number: u64, what: &str) -> String {
 
 /// Range of the run's duration on this host, from its first intervals after warm-up and one row of observables; none if the start does not get that
 /// far.
-pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
+pub fn time_forecast(prepared: &Prepared) -> Option<Fact> {
     let schedule = prepared.schedule;
     let StartTimings { each, row } = probed(prepared).ok()??;
     let length = length(schedule.until);
@@ -136,8 +141,8 @@ pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
     let [low, typical, high] = seconds;
     let words = format!(
         "{} to {}: {} {unit} of about {} µs, as measured on the first ones here after warm-up, plus output",
-        about(low),
-        about(high),
+        rounded_duration(low),
+        rounded_duration(high),
         significant(length, 6),
         significant(1e6 * each[1], 2),
     );
@@ -145,7 +150,7 @@ pub fn of_the_time(prepared: &Prepared) -> Option<Fact> {
     Some(Fact::new("expected_time", data, "time of a run", words))
 }
 
-fn about(seconds: f64) -> String {
+fn rounded_duration(seconds: f64) -> String {
     if seconds < 1.0 {
         return format!("{} seconds", significant(seconds, 2));
     }
@@ -157,7 +162,7 @@ fn about(seconds: f64) -> String {
     ];
     // A unit with a count below one and a half is too coarse.
     let (one, many, unit) = units.into_iter().find(|unit| seconds >= 1.5 * unit.2).unwrap_or(units[3]);
-    counted((seconds / unit).round(), one, many)
+    count_with_noun((seconds / unit).round(), one, many)
 }
 
 /// Length of a run, in the unit of its end.
@@ -170,7 +175,7 @@ fn length(until: Until) -> f64 {
 }
 
 /// Progress of a run, in the same unit.
-fn gone(until: Until, clock: &Clock) -> f64 {
+fn progress_in_unit_of_end(until: Until, clock: &Clock) -> f64 {
     match until {
         Until::Steps(_) => clock.steps as f64,
         Until::Events(_) => clock.events as f64,
@@ -207,11 +212,12 @@ fn probed(prepared: &Prepared) -> Result<Option<StartTimings>, PhysicsFailure> {
         let timer = thread::Builder::new().spawn_scoped(scope, wait);
         is_late.store(timer.is_err(), Ordering::Relaxed);
         let mut probe = || {
-            while !until.has_come(&simulation.clock()) && each.len() <= STRETCHES {
+            while !until.has_been_reached(&simulation.clock()) && each.len() <= STRETCHES {
                 let (from, start) = (simulation.clock(), Instant::now());
                 simulation.advance(&[until, stretch.after(&from)], &is_late)?;
                 let seconds = start.elapsed();
-                let gone = gone(until, &simulation.clock()) - gone(until, &from);
+                let gone = progress_in_unit_of_end(until, &simulation.clock())
+                    - progress_in_unit_of_end(until, &from);
                 match seconds < LONG_ENOUGH {
                     true => stretch = stretch.doubled(),
                     false => each.push(seconds.as_secs_f64() / gone),
@@ -226,7 +232,7 @@ fn probed(prepared: &Prepared) -> Result<Option<StartTimings>, PhysicsFailure> {
         timer.iter().for_each(|timer| timer.thread().unpark());
         done
     })?;
-    let all = gone(until, &simulation.clock());
+    let all = progress_in_unit_of_end(until, &simulation.clock());
     if each.len() > 1 {
         each.remove(0);
     }

@@ -2,7 +2,7 @@
 
 use super::finished::FinishedError;
 use super::folder::SUMMARY;
-use crate::averages::of_independent;
+use crate::averages::mean_of_independent;
 use crate::io::{FileError, regular_file};
 use crate::quoted;
 use crate::structure::{OBSERVABLES, StructureObservable};
@@ -270,7 +270,7 @@ fn joined(runs: &[Vec<FunctionPoint>]) -> Vec<FunctionPoint> {
             run.iter().find(close).map(|point| point.mean)
         };
         let means: Option<Vec<f64>> = std::iter::once(Some(*mean)).chain(others.iter().map(there)).collect();
-        let [mean, bar] = of_independent(&means?)?;
+        let [mean, bar] = mean_of_independent(&means?)?;
         Some(FunctionPoint { over: over.clone(), mean, bar })
     };
     first.iter().filter_map(of).collect()

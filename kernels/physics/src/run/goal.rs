@@ -47,13 +47,13 @@ impl RunGoal {
     pub(super) fn is_reached(&mut self, rows: &AveragedRows) -> bool {
         let count = rows.count();
         if self.looked.0 != count {
-            self.looked = (count, is_looked_at(count) && self.known(rows).is_enough);
+            self.looked = (count, is_checked_at(count) && self.progress_to_target(rows).is_enough);
         }
         self.looked.1
     }
 
     /// Present error of the mean.
-    pub(super) fn known(&self, rows: &AveragedRows) -> TargetProgress {
+    pub(super) fn progress_to_target(&self, rows: &AveragedRows) -> TargetProgress {
         match Average::of(rows, self.place).outcome {
             AverageOutcome::Mean(found) => self.of_mean(&found),
             AverageOutcome::TooShort { enough_at, .. } => {
@@ -70,7 +70,7 @@ impl RunGoal {
     }
 
     fn of_mean(&self, found: &Estimate) -> TargetProgress {
-        let error = self.target.error.same_of(found.mean, found.bar);
+        let error = self.target.error.in_same_terms(found.mean, found.bar);
         let wanted = match (self.target.error, error) {
             (Width::Percent(wanted), Width::Percent(found)) => found / wanted,
             (Width::Absolute(wanted), Width::Absolute(found)) => found / wanted,
@@ -82,12 +82,12 @@ impl RunGoal {
         TargetProgress {
             error: has_samples.then_some(error),
             enough_at: Some(found.equilibrated_at + found.span * longer),
-            is_enough: has_samples && self.target.error.holds(found.mean, found.bar),
+            is_enough: has_samples && self.target.error.admits_half_width(found.mean, found.bar),
         }
     }
 }
 
-fn is_looked_at(rows: u64) -> bool {
+fn is_checked_at(rows: u64) -> bool {
     let mut next = FIRST;
     while next < rows {
         next += next / PART;
@@ -101,8 +101,8 @@ mod tests {
 
     #[test]
     fn checks_come_at_growing_row_counts() {
-        let looks: Vec<u64> = (0..60).filter(|&rows| is_looked_at(rows)).collect();
+        let looks: Vec<u64> = (0..60).filter(|&rows| is_checked_at(rows)).collect();
         assert_eq!(looks, [32, 36, 40, 45, 50, 56]);
-        assert!((0..1_000_000).filter(|&rows| is_looked_at(rows)).count() < 100);
+        assert!((0..1_000_000).filter(|&rows| is_checked_at(rows)).count() < 100);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::RunError;
 use super::folder::{EVENTS, RunFolder, THERMO};
-use super::structured::chosen;
+use super::structured::requested_observables;
 use crate::io::checkpoint::CheckpointCounter;
 use crate::io::growing_file::FileMark;
 use crate::io::opened::{OpenSink, SinkKind};
@@ -55,11 +55,14 @@ impl GrowingSink {
 pub(super) struct GrowingFiles(Vec<GrowingSink>);
 
 /// Returns the names of the files that a run creates, at the start or at its end.
-pub(super) fn names(prepared: &Prepared) -> Vec<&'static str> {
+pub(super) fn run_file_names(prepared: &Prepared) -> Vec<&'static str> {
     let begun = GrowingFiles::of(prepared).0.into_iter().filter(GrowingSink::is_begun).map(|it| it.name);
     let last = FORMATS.iter().filter(|it| matches!(it.writing, FrameWriting::Last(_)));
     let last = last.filter(|format| prepared.output.asks_for(format)).map(|format| format.file);
-    begun.chain(last).chain(chosen(&prepared.output).map(|observable| observable.file)).collect()
+    begun
+        .chain(last)
+        .chain(requested_observables(&prepared.output).map(|observable| observable.file))
+        .collect()
 }
 
 /// Counters of a checkpoint.

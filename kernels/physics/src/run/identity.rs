@@ -36,7 +36,7 @@ impl RunIdentity {
         let file = prepared.start_file.as_deref();
         let scene = match file {
             None => prepared.scene.clone(),
-            Some(file) => with_start_file(&prepared.scene, &seen_from(folder, file), &discs),
+            Some(file) => with_start_file(&prepared.scene, &path_seen_from_folder(folder, file), &discs),
         };
         let file = file.map(|file| file.display().to_string());
         RunIdentity { scene, discs, file, program: program.clone() }
@@ -136,7 +136,7 @@ fn digest(particles: &Particles) -> String {
 
 /// Choices of the run in `folder` that differ from those of `ours`, the resolved scene, for keys that are `auto` in the scene; as overrides, so
 /// that a resumed run keeps them.
-pub fn chosen_otherwise(
+pub fn choices_of_the_run(
     values: &SceneValues,
     vocabulary: &'static Vocabulary,
     ours: &str,
@@ -169,7 +169,7 @@ fn with_start_file(scene: &str, file: &Path, discs: &str) -> String {
 }
 
 /// Path of a file relative to a folder, if a common folder is at most two levels up, so that both can be moved together; else the absolute path.
-fn seen_from(folder: &Path, file: &Path) -> PathBuf {
+fn path_seen_from_folder(folder: &Path, file: &Path) -> PathBuf {
     const LEVELS: usize = 2;
     let place = |folder: &Path| fs::canonicalize(folder).ok();
     let (Some(from), Some(beside), Some(name)) =

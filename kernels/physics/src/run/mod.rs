@@ -21,7 +21,7 @@ mod tests;
 
 pub use finished::{FinishedError, FinishedRun, averages_of};
 pub use functions::{FunctionPoint, Number, StructureFunction, function_of, functions_of};
-pub use identity::chosen_otherwise;
+pub use identity::choices_of_the_run;
 pub use structured::StructureSummary;
 pub use summary::Summary;
 pub use table::{TableError, TableReader};
@@ -131,7 +131,7 @@ pub enum RunError {
     /// The physics broke a precondition during the run.
     #[error(
         "{}\nthe state of that step is the last frame of {}\n  help: {}",
-        failure.what(),
+        failure.what_and_when(),
         quoted::path(snapshot),
         failure.remedy
     )]
@@ -218,7 +218,7 @@ impl Reported for RunError {
         }
     }
 
-    fn passed_on(&self) -> Option<&dyn Reported> {
+    fn inner_error(&self) -> Option<&dyn Reported> {
         match self {
             RunError::Scene(errors) => Some(errors),
             RunError::Physics { failure, .. } | RunError::Start(failure) | RunError::Lost(failure) => {
@@ -242,14 +242,14 @@ impl Reported for RunError {
             RunError::Checkpoint(CheckpointError { file, .. }) | RunError::Foreign { file, .. } => {
                 Some(FilePlace::at(file))
             }
-            _ => self.passed_on()?.place(),
+            _ => self.inner_error()?.place(),
         }
     }
 
     fn remedy(&self) -> Option<String> {
         match self {
             RunError::Exists(_) => Some("--resume, --overwrite or another --out".to_owned()),
-            _ => self.passed_on()?.remedy(),
+            _ => self.inner_error()?.remedy(),
         }
     }
 }
@@ -285,8 +285,8 @@ const LONGEST_STRIDE: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// If the folder belongs to others, or contains a run that must stay.
-pub fn begins(folder: &Path, existing: ExistingRun) -> Result<bool, RunError> {
-    let holds = RUN.listed(folder)?.is_some_and(|names| !names.is_empty());
+pub fn starts_from_beginning(folder: &Path, existing: ExistingRun) -> Result<bool, RunError> {
+    let holds = RUN.listed_names(folder)?.is_some_and(|names| !names.is_empty());
     if holds {
         drop(Lock::take(&folder.join(RUN.lock))?);
     }
@@ -313,7 +313,7 @@ pub fn run(
     let prepared = job.prepared;
     prepared.memory.fits("scene")?;
     // Refusals come before expensive work.
-    begins(folder, existing)?;
+    starts_from_beginning(folder, existing)?;
     let mut simulation = prepared.start(StartPurpose::Run).map_err(RunError::Start)?;
     // An interrupted start would leave a folder without a checkpoint; a resumed run has one.
     let held = (!matches!(existing, ExistingRun::Resume { .. })).then(signals::hold);
@@ -324,7 +324,7 @@ pub fn run(
     let from = simulation.clock();
     let mut strides = STRIDES;
     let start = Instant::now();
-    while !(until.has_come(&simulation.clock()) || recorder.has_reached_its_goal()) {
+    while !(until.has_been_reached(&simulation.clock()) || recorder.has_reached_goal()) {
         if interrupted.load(Ordering::Relaxed) {
             recorder.checkpoint(simulation.as_ref())?;
             return Ok(Ending::Interrupted { clock: simulation.clock() });
@@ -337,9 +337,9 @@ pub fn run(
             strides = strides.saturating_mul(2);
         }
         recorder.log(simulation.as_mut())?;
-        let is_over = until.has_come(&simulation.clock());
+        let is_over = until.has_been_reached(&simulation.clock());
         let failed = match advanced.and_then(|()| if is_over { simulation.check() } else { Ok(()) }) {
-            Ok(()) => match recorder.write_what_is_due(simulation.as_mut()) {
+            Ok(()) => match recorder.write_due_outputs(simulation.as_mut()) {
                 Err(RunError::Lost(failure)) => Some(failure),
                 written => written?,
             },
@@ -349,7 +349,7 @@ pub fn run(
             let seconds = start.elapsed().as_secs_f64();
             let averages = recorder.averages();
             let summary = Summary::of(job, simulation.as_ref(), averages, from, seconds, Some(&failure));
-            recorder.fail(simulation.as_ref(), summary)?;
+            recorder.write_failure(simulation.as_ref(), summary)?;
             simulation.check_ranks().map_err(RunError::Lost)?;
             return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }

@@ -1,9 +1,9 @@
 //! Folder of a run and the schedule of its files.
 
 use super::finished::{LONGEST_SCENE, rows_of};
-use super::folder::{ALWAYS, CHECKPOINTS, RUN, RunFolder, SCENE, SUMMARY, THERMO, needed};
+use super::folder::{ALWAYS, CHECKPOINTS, RUN, RunFolder, SCENE, SUMMARY, THERMO, files_to_resume};
 use super::goal::{RunGoal, TargetProgress};
-use super::growing::{GrowingFiles, names};
+use super::growing::{GrowingFiles, run_file_names};
 use super::identity::{BITS, RunIdentity, same_scene};
 use super::moments::{header_of, moment_of};
 use super::structured::StructureSampler;
@@ -81,7 +81,7 @@ impl RunRecorder {
             ExistingRun::Resume { other_version } if folder.has_own() => match read_latest(path)? {
                 Some(latest) => RunRecorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
-                    begun_with(&folder, &RunIdentity::of(job, path).scene)?;
+                    check_scene_of_start(&folder, &RunIdentity::of(job, path).scene)?;
                     notes.push("started again: there was no checkpoint yet".to_owned());
                     RunRecorder::begin(folder, job, simulation, notes)
                 }
@@ -98,13 +98,13 @@ impl RunRecorder {
         notes: Vec<String>,
     ) -> Result<RunRecorder, RunError> {
         folder.clear(&CHECKPOINTS)?;
-        folder.claim(ALWAYS.into_iter().chain(names(job.prepared)), false)?;
+        folder.claim(ALWAYS.into_iter().chain(run_file_names(job.prepared)), false)?;
         let header = header_of(job.prepared, job.quantities, simulation);
         let growing = GrowingFiles::begin(&folder, job.prepared, &header)?;
         let mut recorder = RunRecorder::with(folder, job, (growing, header), &simulation.clock(), notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
-        if let Some(failure) = recorder.thermo(simulation)? {
+        if let Some(failure) = recorder.add_thermo_row(simulation)? {
             return Err(RunError::Start(failure));
         }
         recorder.snapshot(simulation)?;
@@ -170,7 +170,7 @@ impl RunRecorder {
             ));
         }
         let asked = prepared.schedule.until;
-        if asked.has_passed(&clock) {
+        if asked.is_exceeded(&clock) {
             let done = match asked {
                 Until::Steps(_) => Until::Steps(clock.steps),
                 Until::Time(_) => Until::Time(clock.time),
@@ -187,9 +187,9 @@ impl RunRecorder {
             columns: std::mem::take(&mut checkpoint.columns),
         };
         let restored = simulation.restore(clock, snapshot);
-        whole(simulation, restored)?.map_err(foreign)?;
+        unless_rank_lost(simulation, restored)?.map_err(foreign)?;
 
-        folder.claim(ALWAYS.into_iter().chain(names(prepared)), false)?;
+        folder.claim(ALWAYS.into_iter().chain(run_file_names(prepared)), false)?;
         growing.cut(&folder, &header)?;
         // These files describe an end that the resumed run has not reached.
         folder.remove_own(SUMMARY)?;
@@ -211,14 +211,14 @@ impl RunRecorder {
     }
 
     /// Returns true if the target error is reached.
-    pub(super) fn has_reached_its_goal(&mut self) -> bool {
+    pub(super) fn has_reached_goal(&mut self) -> bool {
         self.goal.as_mut().is_some_and(|goal| goal.is_reached(&self.rows))
     }
 
     /// Goal and present error; none if there is no goal, or it is reached.
     pub(super) fn missed_goal(&self) -> Option<(&RunGoal, TargetProgress)> {
         let goal = self.goal.as_ref()?;
-        let known = goal.known(&self.rows);
+        let known = goal.progress_to_target(&self.rows);
         (!known.is_enough).then_some((goal, known))
     }
 
@@ -237,20 +237,20 @@ impl RunRecorder {
     }
 
     /// Writes everything due; returns a failure that only sums over all particles reveal.
-    pub(super) fn write_what_is_due(
+    pub(super) fn write_due_outputs(
         &mut self,
         simulation: &mut dyn Simulation,
     ) -> Result<Option<PhysicsFailure>, RunError> {
         let clock = simulation.clock();
         let [rows, snapshots, mut checkpoints] =
-            self.due.map(|due| due.is_some_and(|moment| moment.has_come(&clock)));
+            self.due.map(|due| due.is_some_and(|moment| moment.has_been_reached(&clock)));
         let Schedule { rows: row, snapshots: snapshot, checkpoints: checkpoint, .. } = self.schedule;
         if let Every::Seconds(seconds) = checkpoint {
             checkpoints = self.unsaved_since.elapsed().as_secs_f64() >= seconds;
         }
         if rows {
             self.due[0] = row.next(&clock);
-            if let Some(failure) = self.thermo(simulation)? {
+            if let Some(failure) = self.add_thermo_row(simulation)? {
                 return Ok(Some(failure));
             }
         }
@@ -263,7 +263,7 @@ impl RunRecorder {
             self.structured.snapshot(&moment);
             self.growing.add(WriteOccasion::Frame, &moment, clock)?;
         }
-        whole(simulation, ())?;
+        unless_rank_lost(simulation, ())?;
         // A checkpoint needs the memory of its frame.
         drop(moment);
         if checkpoints {
@@ -282,12 +282,15 @@ impl RunRecorder {
     }
 
     /// Adds a row of observables, unless one of them is not finite though it must be.
-    fn thermo(&mut self, simulation: &mut dyn Simulation) -> Result<Option<PhysicsFailure>, RunError> {
+    fn add_thermo_row(
+        &mut self,
+        simulation: &mut dyn Simulation,
+    ) -> Result<Option<PhysicsFailure>, RunError> {
         if let Err(failure) = simulation.check() {
             return Ok(Some(failure));
         }
         let (clock, row) = (simulation.clock(), simulation.row());
-        let row = whole(simulation, row)?;
+        let row = unless_rank_lost(simulation, row)?;
         let named = self.quantities.iter().zip(&row);
         if let Some((quantity, &value)) = named.into_iter().find(|(it, value)| !is_sound(it.name, **value)) {
             return Ok(Some(overflow(clock, quantity.name, value)));
@@ -303,12 +306,16 @@ impl RunRecorder {
     fn snapshot(&mut self, simulation: &dyn Simulation) -> Result<(), RunError> {
         let moment = moment_of(simulation, &self.header, &self.rows);
         let added = self.growing.add(WriteOccasion::Frame, &moment, simulation.clock());
-        whole(simulation, added)?
+        unless_rank_lost(simulation, added)?
     }
 
     /// Writes the state of a failed step, also if no snapshot is due, and its summary. If a rank is lost, its part of the state is unknown and no
     /// frame is written.
-    pub(super) fn fail(&mut self, simulation: &dyn Simulation, summary: Summary) -> Result<(), RunError> {
+    pub(super) fn write_failure(
+        &mut self,
+        simulation: &dyn Simulation,
+        summary: Summary,
+    ) -> Result<(), RunError> {
         if simulation.check_ranks().is_ok() {
             let moment = moment_of(simulation, &self.header, &self.rows);
             self.growing.add_to(self.trajectory().file, &moment, simulation.clock())?;
@@ -337,7 +344,7 @@ impl RunRecorder {
         let mut counters = self.growing.mark()?;
         counters.insert("bits".to_owned(), CheckpointCounter::Count(BITS));
         counters.insert(EVENT_COUNT.to_owned(), CheckpointCounter::Count(clock.events));
-        let mut snapshot = whole(simulation, simulation.snapshot())?;
+        let mut snapshot = unless_rank_lost(simulation, simulation.snapshot())?;
         self.structured.keep(&mut snapshot);
         counters.extend(snapshot.counters);
         let checkpoint = Checkpoint {
@@ -352,7 +359,7 @@ impl RunRecorder {
         self.checkpointed = Some(clock);
         self.unsaved_since = Instant::now();
         // This check follows the checkpoint, so that the remaining files can be resumed.
-        Ok(self.folder.still_has(needed(true))?)
+        Ok(self.folder.check_still_there(files_to_resume(true))?)
     }
 
     /// Ends the run: writes a last checkpoint, the last state in every requested file, and the summary. The frame follows the checkpoint, so that
@@ -362,15 +369,15 @@ impl RunRecorder {
         simulation: &dyn Simulation,
         summary: Summary,
     ) -> Result<Summary, RunError> {
-        let summary = whole(simulation, summary)?;
+        let summary = unless_rank_lost(simulation, summary)?;
         self.checkpoint(simulation)?;
         let moment = moment_of(simulation, &self.header, &self.rows);
         self.growing.add(WriteOccasion::Frame, &moment, simulation.clock())?;
         self.growing.mark()?;
-        whole(simulation, ())?;
+        unless_rank_lost(simulation, ())?;
         for format in FORMATS.iter().filter(|format| self.output.asks_for(format)) {
             if let FrameWriting::Last(write) = format.writing {
-                let frame = whole(simulation, moment.frame())?;
+                let frame = unless_rank_lost(simulation, moment.frame())?;
                 self.folder.write(format.file, |out| write(frame, out))?;
             }
         }
@@ -386,13 +393,13 @@ impl RunRecorder {
             serde_json::to_writer_pretty(&mut *out, &summary)?;
             writeln!(out)
         })?;
-        self.folder.still_has(needed(self.checkpointed.is_some()))?;
+        self.folder.check_still_there(files_to_resume(self.checkpointed.is_some()))?;
         Ok(summary)
     }
 }
 
 /// Passes on a value read from a simulation; an error if a rank is lost.
-fn whole<T>(simulation: &dyn Simulation, seen: T) -> Result<T, RunError> {
+fn unless_rank_lost<T>(simulation: &dyn Simulation, seen: T) -> Result<T, RunError> {
     simulation.check_ranks().map(|()| seen).map_err(RunError::Lost)
 }
 
@@ -405,7 +412,7 @@ fn overflow(at: Clock, quantity: &'static str, value: f64) -> PhysicsFailure {
 }
 
 /// Refuses another scene than that of a run without a checkpoint.
-fn begun_with(folder: &RunFolder, scene: &str) -> Result<(), RunError> {
+fn check_scene_of_start(folder: &RunFolder, scene: &str) -> Result<(), RunError> {
     let path = folder.file(SCENE);
     match regular_file::read(&path, LONGEST_SCENE) {
         Ok(theirs) => same_scene(folder.path(), &String::from_utf8_lossy(&theirs), scene),

@@ -77,14 +77,16 @@ pub struct StructureSummary {
 const SHARE: f64 = 0.05;
 
 /// Observables that a scene requests, in the order of their list.
-pub(super) fn chosen(output: &Output) -> impl Iterator<Item = &'static StructureObservable> + use<'_> {
+pub(super) fn requested_observables(
+    output: &Output,
+) -> impl Iterator<Item = &'static StructureObservable> + use<'_> {
     OBSERVABLES.iter().filter(|observable| output.structure.iter().any(|name| name == observable.name))
 }
 
 /// Strides of sampled rows and snapshots.
-pub(super) fn every(prepared: &Prepared) -> [u64; 2] {
+pub(super) fn sampling_strides(prepared: &Prepared) -> [u64; 2] {
     let setting = setting_of(prepared);
-    let asked: Vec<&StructureObservable> = chosen(&prepared.output).collect();
+    let asked: Vec<&StructureObservable> = requested_observables(&prepared.output).collect();
     let share = prepared.output.structure_share.unwrap_or(SHARE);
     let schedule = prepared.schedule;
     let work = [schedule.rows, schedule.snapshots].map(|every| spacing(every) * prepared.model.work());
@@ -102,8 +104,8 @@ impl StructureSampler {
     pub(super) fn new(prepared: &Prepared) -> StructureSampler {
         let grains = prepared.particles().grains();
         let setting = setting_of(prepared);
-        let asked: Vec<&StructureObservable> = chosen(&prepared.output).collect();
-        let strides = every(prepared);
+        let asked: Vec<&StructureObservable> = requested_observables(&prepared.output).collect();
+        let strides = sampling_strides(prepared);
         let spacings = [prepared.schedule.rows, prepared.schedule.snapshots].map(spacing);
         let stands = asked.iter().any(|observable| matches!(observable.seen, SamplingKind::Once { .. }));
         let moves = asked.iter().any(|observable| matches!(observable.seen, SamplingKind::Twice { .. }));
@@ -113,13 +115,13 @@ impl StructureSampler {
             blocks: Blocks::new(width(observable, &setting)),
         };
         let look = stands.then(|| StructureSample::new(setting, prepared.particles(), asked.iter().copied()));
-        let meets = look.as_ref().is_some_and(|look| look.asks(SampleData::Forces));
+        let meets = look.as_ref().is_some_and(|look| look.needs_data(SampleData::Forces));
         StructureSampler {
             setting,
             strides,
             passed: [0; 2],
             spacings: [0, 1].map(|at| spacings[at] * strides[at] as f64),
-            sums: chosen(&prepared.output).map(sum).collect(),
+            sums: requested_observables(&prepared.output).map(sum).collect(),
             look,
             forces: prepared.model.pair_forces().filter(|_| meets),
             motion: moves.then(|| (MotionHistory::new(grains.len()), GrainStates::of(grains))),
@@ -149,7 +151,7 @@ impl StructureSampler {
         let is_known =
             |observable: &StructureObservable| at_same_moments && column(observable.name).is_some();
         // Functions of two moments are resumed together or not at all.
-        let motion_is_known = structured.moving().all(|sum| is_known(sum.observable));
+        let motion_is_known = structured.sums_of_two_moments().all(|sum| is_known(sum.observable));
         if at_same_moments {
             structured.passed = [there.count(&key(PASSED[0]))?, there.count(&key(PASSED[1]))?];
         }
@@ -180,24 +182,24 @@ impl StructureSampler {
     }
 
     /// Sums of functions of two moments.
-    fn moving(&self) -> impl Iterator<Item = &ObservableSums> {
+    fn sums_of_two_moments(&self) -> impl Iterator<Item = &ObservableSums> {
         self.sums.iter().filter(|sum| matches!(sum.observable.seen, SamplingKind::Twice { .. }))
     }
 
     /// Counts a row or a snapshot; returns true if it is sampled.
-    fn passes(&mut self, what: usize) -> bool {
+    fn counts_as_sample(&mut self, what: usize) -> bool {
         self.passed[what] += 1;
         self.passed[what].is_multiple_of(self.strides[what])
     }
 
     /// Samples a moment with a row.
     pub(super) fn row(&mut self, moment: &RunMoment<'_>) {
-        if self.motion.is_none() || !self.passes(ROWS) {
+        if self.motion.is_none() || !self.counts_as_sample(ROWS) {
             return;
         }
         let StructureSampler { setting, sums, motion, .. } = self;
         let Some((motion, states)) = motion else { return };
-        states.forget();
+        states.mark_all_lost();
         moment.per_particle.states(states);
         if self.follows {
             let images = moment.per_particle.images();
@@ -212,7 +214,7 @@ impl StructureSampler {
             SamplingKind::Twice { of, .. } => Some(of),
             SamplingKind::Once { .. } => None,
         };
-        motion.look(states.rows(), moment.time, |look, place, means| {
+        motion.add_sample(states.rows(), moment.time, |look, place, means| {
             for sum in &mut *sums {
                 if let Some(of) = of(sum) {
                     sum.blocks.add(look, place, of(means), 1.0);
@@ -224,15 +226,15 @@ impl StructureSampler {
 
     /// Samples a moment with a snapshot.
     pub(super) fn snapshot(&mut self, moment: &RunMoment<'_>) {
-        if self.look.is_none() || !self.passes(SNAPSHOTS) {
+        if self.look.is_none() || !self.counts_as_sample(SNAPSHOTS) {
             return;
         }
         let Some(look) = &mut self.look else { return };
-        let is_any_left = look.at(|states| {
-            states.forget();
+        let is_any_left = look.take_sample(|states| {
+            states.mark_all_lost();
             moment.per_particle.states(states);
             if !moment.per_particle.is_whole() {
-                states.forget();
+                states.mark_all_lost();
             }
         });
         if !is_any_left {
@@ -243,7 +245,7 @@ impl StructureSampler {
             if !moment.per_particle.is_whole() {
                 return;
             }
-            look.meet(particles, forces);
+            look.add_pair_forces(particles, forces);
         }
         for sum in &mut self.sums {
             if let SamplingKind::Once { .. } = sum.observable.seen {

@@ -93,7 +93,7 @@ impl Summary {
             left_out: prepared.left_out.clone(),
             warnings,
             checks,
-            foreseen: forecast::as_data(forecast::of_the_step(prepared)),
+            foreseen: forecast::as_data(forecast::step_forecast(prepared)),
             notes: vec![],
             failure: failure.cloned(),
             averages,

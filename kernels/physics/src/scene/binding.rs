@@ -101,14 +101,14 @@ impl<'v> ReadBinding<'v> {
     ///
     /// # Errors
     /// Keys that have neither a value nor a default.
-    pub fn done(self) -> Result<(), SceneErrors> {
-        SceneErrors::none_of(self.missing)
+    pub fn finish_reading(self) -> Result<(), SceneErrors> {
+        SceneErrors::ok_if_empty(self.missing)
     }
 }
 
 impl Binding for ReadBinding<'_> {
     fn meet(&mut self, key: &'static Key, _: Option<KeyValue>) -> Option<KeyValue> {
-        let implied = self.values.implying(key).any(|other| self.values.gives(other));
+        let implied = self.values.implying(key).any(|other| self.values.is_given(other));
         if implied {
             return self.values.choice(key).map(KeyValue::Word);
         }

@@ -261,7 +261,7 @@ impl DiscStart {
             DiscStart::File(file) => {
                 let mut name = file.path().to_string_lossy().into_owned();
                 binding.word(&FILE, &mut name);
-                *file = StartFile::new(beside(binding.file(), &name), binding.shared_start());
+                *file = StartFile::new(start_file_path(binding.file(), &name), binding.shared_start());
             }
             DiscStart::List(list) => list.bind(binding),
             DiscStart::Hexagonal { count, packing_fraction, grains } => {
@@ -276,7 +276,7 @@ impl DiscStart {
             DiscStart::Mesh { amount, grains, spacing } => {
                 amount.bind(binding);
                 grains.bind(binding, false);
-                or_else(binding, &SPACING, spacing, 2.0 * grains.radius);
+                bind_number_or(binding, &SPACING, spacing, 2.0 * grains.radius);
             }
             DiscStart::Pipe { amount, grains, lining, clear_width } => {
                 amount.bind(binding);
@@ -354,16 +354,16 @@ impl GeneratedDiscs {
             None => Speed::Deviation(speed.unwrap_or(0.0)),
         };
         if spread {
-            or_else(binding, &SECOND_RADIUS, &mut self.second.radius, self.radius);
+            bind_number_or(binding, &SECOND_RADIUS, &mut self.second.radius, self.radius);
             binding.number(&SECOND_SHARE, &mut self.second.share);
             binding.number(&RADIUS_SPREAD, &mut self.spread);
-            or_else(binding, &RADIUS_CUT, &mut self.cut, (2.0 * self.spread).min(0.12));
+            bind_number_or(binding, &RADIUS_CUT, &mut self.cut, (2.0 * self.spread).min(0.12));
         }
     }
 }
 
 /// Binds a number whose default depends on other values.
-fn or_else(binding: &mut dyn Binding, key: &'static Key, field: &mut f64, otherwise: f64) {
+fn bind_number_or(binding: &mut dyn Binding, key: &'static Key, field: &mut f64, otherwise: f64) {
     match binding.meet(key, Some(KeyValue::Number(*field))) {
         Some(KeyValue::Number(value)) => *field = value,
         _ if binding.reads() => *field = otherwise,
@@ -373,8 +373,8 @@ fn or_else(binding: &mut dyn Binding, key: &'static Key, field: &mut f64, otherw
 
 impl WallLining {
     fn bind(&mut self, binding: &mut dyn Binding, grain: f64) {
-        or_else(binding, &WALL_RADIUS, &mut self.radius, 0.9 * grain);
-        or_else(binding, &WALL_SPACING, &mut self.spacing, 3.0 * self.radius);
+        bind_number_or(binding, &WALL_RADIUS, &mut self.radius, 0.9 * grain);
+        bind_number_or(binding, &WALL_SPACING, &mut self.spacing, 3.0 * self.radius);
     }
 }
 
@@ -392,12 +392,12 @@ impl List {
         binding.numbers(&OMEGAS, &mut self.omegas);
         binding.numbers(&RADII, &mut self.radii);
         binding.pairs(&WALL_POSITIONS, &mut self.wall_positions);
-        or_else(binding, &WALL_RADIUS, &mut self.wall_radius, 0.9 * self.radius);
+        bind_number_or(binding, &WALL_RADIUS, &mut self.wall_radius, 0.9 * self.radius);
     }
 }
 
 /// Path of a start file: absolute, or relative to the scene file.
-fn beside(scene_file: &str, path: &str) -> PathBuf {
+fn start_file_path(scene_file: &str, path: &str) -> PathBuf {
     let folder = Path::new(scene_file).parent().unwrap_or(Path::new(""));
     let path = folder.join(path);
     std::path::absolute(&path).unwrap_or(path)

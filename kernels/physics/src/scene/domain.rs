@@ -55,7 +55,7 @@ impl SceneDomain {
 }
 
 /// Checks that sides are periodic as a start requires.
-pub(super) fn periodic_as(values: &SceneValues, needed: [bool; 2], why: &str) -> Option<SceneError> {
+pub(super) fn check_periodicity(values: &SceneValues, needed: [bool; 2], why: &str) -> Option<SceneError> {
     let Some(KeyValue::Switches(periodic)) = values.value(&PERIODIC) else { return None };
     (periodic != needed).then(|| {
         let found = KeyValue::Switches(periodic).to_toml();

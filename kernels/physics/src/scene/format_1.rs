@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 ///
 /// # Errors
 /// A list of the keys that have another meaning or another name in format 2.
-pub(super) fn refuse(
+pub(super) fn reject_format_1(
     table: &DeTable<'_>,
     text: &InputText<'_>,
     methods: &[&'static Vocabulary],
@@ -35,5 +35,5 @@ pub(super) fn refuse(
         let message = format!("`{}{}` is of format 1", renamed.old, word.unwrap_or_default());
         errors.push(text.spot(key.span().start).error(MistakeKind::Format, message).expecting(renamed.new));
     }
-    SceneErrors::none_of(errors)
+    SceneErrors::ok_if_empty(errors)
 }

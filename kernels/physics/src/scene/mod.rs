@@ -51,7 +51,7 @@ pub(crate) use machine::{
 };
 pub use machine::{PRECISION, Precision};
 pub use overrides::Overrides;
-pub use rules::disagreements;
+pub use rules::start_inconsistencies;
 pub use start_file::StartFile;
 pub use target::{MeanTarget, Width};
 pub use values::{Preset, RenamedKey, SceneValues, Vocabulary};

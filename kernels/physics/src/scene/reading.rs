@@ -47,8 +47,8 @@ impl SceneValues {
 
     /// Applies all rules to the values.
     fn checked(mut self) -> Result<SceneValues, SceneErrors> {
-        rules::apply(&mut self);
-        std::mem::take(&mut self.errors).none_of(&self.file)?;
+        rules::apply_rules(&mut self);
+        std::mem::take(&mut self.errors).ok_without_mistakes(&self.file)?;
         Ok(self)
     }
 

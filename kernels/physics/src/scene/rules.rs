@@ -2,13 +2,13 @@
 
 use super::SceneError;
 use super::disc_keys::{COUNT, GENERATE, OMEGAS, PACKING_FRACTION, POSITIONS, RADII, VELOCITIES};
-use super::domain::periodic_as;
+use super::domain::check_periodicity;
 use super::keys::{Fallback, Key, KeyValue};
 use super::values::SceneValues;
 use crate::input::MistakeKind;
 
 /// Applies all rules to the values, sets aside values that overrides make obsolete, and records every mistake.
-pub(super) fn apply(values: &mut SceneValues) {
+pub(super) fn apply_rules(values: &mut SceneValues) {
     rivals(values);
     unused(values);
     missing(values);
@@ -69,7 +69,7 @@ fn unused(values: &mut SceneValues) {
             values.set_aside(key);
             continue;
         }
-        let chosen = match values.implying(by).find(|other| values.gives(other)) {
+        let chosen = match values.implying(by).find(|other| values.is_given(other)) {
             Some(other) => format!("`{}`", other.path()),
             None => format!("{} = \"{choice}\"", by.path()),
         };
@@ -83,7 +83,7 @@ fn unused(values: &mut SceneValues) {
 
 fn missing(values: &mut SceneValues) {
     for key in values.vocabulary.keys.keys() {
-        let absent = !values.gives(key) && !values.is_faulty(key);
+        let absent = !values.is_given(key) && !values.is_faulty(key);
         if key.fallback == Fallback::Required && absent && values.is_used(key) {
             let error = values
                 .spot(key)
@@ -96,15 +96,15 @@ fn missing(values: &mut SceneValues) {
 }
 
 /// Inconsistencies between the keys of a start.
-pub fn disagreements(values: &SceneValues) -> Vec<SceneError> {
+pub fn start_inconsistencies(values: &SceneValues) -> Vec<SceneError> {
     let mut errors = Vec::new();
     let choice = values.choice(&GENERATE);
     match choice.as_deref() {
         Some("hexagonal") => {
             let why = "a hexagonal lattice is periodic along x and y";
-            errors.extend(periodic_as(values, [true, true], why));
+            errors.extend(check_periodicity(values, [true, true], why));
             for key in [&COUNT, &PACKING_FRACTION] {
-                if !values.gives(key) && !values.is_faulty(key) {
+                if !values.is_given(key) && !values.is_faulty(key) {
                     let error =
                         values.spot(key).error(MistakeKind::Missing, format!("`{}` is missing", key.path()));
                     errors.push(error.expecting(key.expected()).advising(key.doc));
@@ -113,10 +113,14 @@ pub fn disagreements(values: &SceneValues) -> Vec<SceneError> {
         }
         Some("pipe") => {
             let why = "a pipe is periodic along x and walled along y";
-            errors.extend(periodic_as(values, [true, false], why));
+            errors.extend(check_periodicity(values, [true, false], why));
         }
         Some("box") => {
-            errors.extend(periodic_as(values, [true, false], "a box is periodic along x and has a floor"));
+            errors.extend(check_periodicity(
+                values,
+                [true, false],
+                "a box is periodic along x and has a floor",
+            ));
         }
         _ => {}
     }

@@ -32,7 +32,7 @@ impl Width {
     }
 
     /// True if a half-width is at most this one.
-    pub(crate) fn holds(self, mean: f64, bar: f64) -> bool {
+    pub(crate) fn admits_half_width(self, mean: f64, bar: f64) -> bool {
         match self {
             Width::Percent(percent) => bar <= 0.01 * percent * mean.abs(),
             Width::Absolute(width) => bar <= width,
@@ -40,7 +40,7 @@ impl Width {
     }
 
     /// Half-width in the same terms.
-    pub(crate) fn same_of(self, mean: f64, bar: f64) -> Width {
+    pub(crate) fn in_same_terms(self, mean: f64, bar: f64) -> Width {
         match self {
             Width::Percent(_) => Width::Percent(100.0 * bar / mean.abs()),
             Width::Absolute(_) => Width::Absolute(bar),
@@ -79,7 +79,13 @@ mod tests {
             [Width::Percent(0.1), Width::Percent(2.0), Width::Absolute(0.5)].map(Some)
         );
         assert!(["0%", "-1%", "nan%", "inf", "", "%"].iter().all(|text| Width::parse(text).is_none()));
-        assert!(Width::Percent(1.0).holds(-4.0, 0.04) && !Width::Percent(1.0).holds(4.0, 0.05));
-        assert!(Width::Absolute(0.1).holds(4.0, 0.1) && !Width::Absolute(0.1).holds(4.0, 0.2));
+        assert!(
+            Width::Percent(1.0).admits_half_width(-4.0, 0.04)
+                && !Width::Percent(1.0).admits_half_width(4.0, 0.05)
+        );
+        assert!(
+            Width::Absolute(0.1).admits_half_width(4.0, 0.1)
+                && !Width::Absolute(0.1).admits_half_width(4.0, 0.2)
+        );
     }
 }

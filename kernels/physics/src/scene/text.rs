@@ -14,7 +14,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Method that a text and its overrides name, and the location of its name.
-fn asked_method(table: &DeTable<'_>, text: &InputText<'_>, overrides: &[String]) -> Option<(String, Spot)> {
+fn requested_method(
+    table: &DeTable<'_>,
+    text: &InputText<'_>,
+    overrides: &[String],
+) -> Option<(String, Spot)> {
     let overriding = overrides.iter().rev().find_map(|text| {
         let (path, value) = text.split_once('=')?;
         let spot = Spot { file: format!("--set {text}"), place: None };
@@ -36,18 +40,18 @@ pub(super) fn read(
 ) -> Result<SceneValues, SceneErrors> {
     let text = &InputText::new(file, text);
     let table = text.table()?;
-    super::format_1::refuse(&table, text, methods)?;
-    let asked = asked_method(&table, text, overrides);
+    super::format_1::reject_format_1(&table, text, methods)?;
+    let asked = requested_method(&table, text, overrides);
     let known = |name: &str| methods.iter().copied().find(|method| method.keys.method == name);
     let vocabulary = match &asked {
         Some((name, spot)) => known(name).ok_or_else(|| unknown_method(name, spot, methods))?,
         // Without a method's name the file is read as if it named the first one; the missing name is reported too.
         None => methods.first().copied().ok_or_else(|| unknown_method("", &Spot::default(), methods))?,
     };
-    let mut values = SceneValues::none(file, vocabulary, methods);
+    let mut values = SceneValues::empty_values(file, vocabulary, methods);
     let source = ValueSource { text: Some(text), file, keys: &vocabulary.keys, methods };
     for (name, value) in &table {
-        source.top(&mut values, name, value);
+        source.read_head_entry(&mut values, name, value);
     }
     let version = values.errors.named().iter().find(|error| error.reason == MistakeKind::Format);
     if let Some(error) = version.cloned() {
@@ -86,7 +90,7 @@ fn override_with(values: &mut SceneValues, text: &str, methods: &[&'static Vocab
             Some((name, _)) => source.key(values, name, &Spanned::new(0..0, key.into()), &value),
             None => source.unknown_section(values, &Spanned::new(0..0, section.into())),
         },
-        None => source.top(values, &Spanned::new(0..0, path.into()), &value),
+        None => source.read_head_entry(values, &Spanned::new(0..0, path.into()), &value),
     }
 }
 
@@ -117,7 +121,7 @@ impl ValueSource<'_> {
     }
 
     /// Reads a key or section at the head of the file.
-    fn top(
+    fn read_head_entry(
         &self,
         values: &mut SceneValues,
         name: &Spanned<std::borrow::Cow<'_, str>>,
@@ -180,8 +184,9 @@ impl ValueSource<'_> {
         match key.kind.read(value) {
             Ok(read) => {
                 let elements = value.get_ref().as_array().into_iter().flatten();
-                let places =
-                    |text: &InputText<'_>| elements.map(|item| text.place(item.span().start)).collect();
+                let places = |text: &InputText<'_>| {
+                    elements.map(|item| text.location_of_byte(item.span().start)).collect()
+                };
                 let entry = ValueEntry {
                     value: read,
                     spot: self.spot(name.span().start),

@@ -90,11 +90,11 @@ impl SceneValues {
     }
 
     /// Values without a text: the program that made the scene supplies everything.
-    pub(crate) fn of_no_text(vocabulary: &'static Vocabulary) -> SceneValues {
-        SceneValues::none("scene", vocabulary, &[])
+    pub(crate) fn without_text(vocabulary: &'static Vocabulary) -> SceneValues {
+        SceneValues::empty_values("scene", vocabulary, &[])
     }
 
-    pub(super) fn none(
+    pub(super) fn empty_values(
         file: &str,
         vocabulary: &'static Vocabulary,
         methods: &[&'static Vocabulary],
@@ -147,7 +147,7 @@ impl SceneValues {
     }
 
     /// True if a key was given with a valid value.
-    pub fn gives(&self, key: &Key) -> bool {
+    pub fn is_given(&self, key: &Key) -> bool {
         self.values.contains_key(&key.id())
     }
 
@@ -197,7 +197,7 @@ impl SceneValues {
     /// Value of a key, given or by default, if it is a word. A choice that another key implies counts as given.
     pub fn choice(&self, key: &Key) -> Option<String> {
         for other in self.implying(key) {
-            if self.gives(other) {
+            if self.is_given(other) {
                 return other.implies.map(|(_, choice)| choice.to_owned());
             }
             if self.is_faulty(other) {

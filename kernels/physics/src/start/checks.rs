@@ -30,13 +30,13 @@ pub fn outside(stated: &StatedStart<'_>, domain: &Domain, particles: &Particles)
     };
     let mut errors = Vec::new();
     for (number, disc) in particles.all().iter().enumerate() {
-        let ([x, y], what) = (disc.place().map(readable), noun(disc.kind));
-        let spot = spot_of(stated, particles, number);
+        let ([x, y], what) = (disc.planar_position().map(rounded_to_nine_digits), disc_noun(disc.kind));
+        let spot = location_of_disc(stated, particles, number);
         if !domain.contains(disc.position) {
             let message = format!("{what} {} at ({x}, {y}) is outside the box", disc.id);
             let inside = format!("a position from ({left}, {bottom}) to below ({right}, {top})");
             errors.push(spot.error(MistakeKind::Outside, message).expecting(inside));
-        } else if disc.kind == ParticleKind::Wall && leaves(disc.place()) {
+        } else if disc.kind == ParticleKind::Wall && leaves(disc.planar_position()) {
             let message = format!(
                 "{what} {} at ({x}, {y}) oscillates by ({}, {}) out of the box, which extends from ({left}, {bottom}) to \
                  ({right}, {top})",
@@ -53,7 +53,7 @@ pub fn outside(stated: &StatedStart<'_>, domain: &Domain, particles: &Particles)
 }
 
 /// Noun for a disc of a kind.
-pub(crate) fn noun(kind: ParticleKind) -> &'static str {
+pub(crate) fn disc_noun(kind: ParticleKind) -> &'static str {
     match kind {
         ParticleKind::Grain => "disc",
         ParticleKind::Wall => "wall disc",
@@ -61,12 +61,12 @@ pub(crate) fn noun(kind: ParticleKind) -> &'static str {
 }
 
 /// Rounds a number to nine digits, without the rounding errors of sums.
-pub(crate) fn readable(number: f64) -> f64 {
+pub(crate) fn rounded_to_nine_digits(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }
 
 /// Location where a disc is listed, or of the key that created it.
-fn spot_of(stated: &StatedStart<'_>, particles: &Particles, number: usize) -> Spot {
+fn location_of_disc(stated: &StatedStart<'_>, particles: &Particles, number: usize) -> Spot {
     match *stated.start {
         DiscStart::List(_) => match number.checked_sub(particles.grain_count()) {
             None => stated.item_spot(&POSITIONS, number),
@@ -110,8 +110,8 @@ fn visit_overlaps(
     let mut near = NeighbourSearch::new(*domain, 2.0 * largest);
     let discs = particles.all();
     for (number, disc) in discs.iter().enumerate() {
-        let position = domain.wrapped(disc.place());
-        for (other, there) in near.of(position) {
+        let position = domain.wrapped(disc.planar_position());
+        for (other, there) in near.candidates_near(position) {
             let reach = disc.radius + discs[other as usize].radius;
             let penetration = 1.0 - domain.distance(position, there) / reach;
             if penetration > limit && !visit(other as usize, number, penetration) {
@@ -156,8 +156,8 @@ pub(crate) fn overlaps(
     for (first, second, penetration) in worst {
         let [a, b] = [first, second].map(|number| {
             let disc = &discs[number];
-            let [x, y] = disc.place().map(readable);
-            format!("{} {} at ({x}, {y})", noun(disc.kind), disc.id)
+            let [x, y] = disc.planar_position().map(rounded_to_nine_digits);
+            format!("{} {} at ({x}, {y})", disc_noun(disc.kind), disc.id)
         });
         let reach = discs[first].radius + discs[second].radius;
         let message = format!(
@@ -166,7 +166,9 @@ pub(crate) fn overlaps(
             significant(penetration * reach, 4)
         );
         let least = format!("centres at least {} apart", significant((1.0 - limit) * reach, 9));
-        errors.push(spot_of(stated, particles, second).error(MistakeKind::Overlap, message).expecting(least));
+        errors.push(
+            location_of_disc(stated, particles, second).error(MistakeKind::Overlap, message).expecting(least),
+        );
     }
     if let (Some(last), true) = (errors.last_mut(), count > NAMED) {
         let more = count - NAMED;

@@ -5,7 +5,7 @@ use crate::domain::Domain;
 use crate::memory::{self, Available};
 use crate::number::significant;
 use crate::particles::{Particle, ParticleKind, in_space};
-use crate::placement::{RandomPlacement, random, stir};
+use crate::placement::{RandomPlacement, place_randomly, set_gaussian_velocities};
 use crate::scene::{Amount, COUNT, GENERATE, GeneratedDiscs, Key, MistakeKind, PACKING_FRACTION, SceneError};
 use std::f64::consts::PI;
 
@@ -18,7 +18,11 @@ pub(super) const COMPRESSED: f64 = 0.885;
 
 /// Checks, before anything is placed, that the machine has the memory to place the discs and to search for overlaps: each disc, and its entry in a
 /// map of squares whose size is a power of two.
-pub(super) fn placeable(stated: &StatedStart<'_>, count: f64, key: &Key) -> Result<(), SceneError> {
+pub(super) fn check_placement_memory(
+    stated: &StatedStart<'_>,
+    count: f64,
+    key: &Key,
+) -> Result<(), SceneError> {
     /// Size of an entry of the map, and of a disc in its square (bytes).
     const SQUARE: [f64; 2] = [25.0, 40.0];
     let squares = (count * 8.0 / 7.0).log2().ceil().exp2();
@@ -100,7 +104,7 @@ pub(super) fn grain_count(
             false => "place fewer discs, or start from generate = \"compressed\" or \"hexagonal\"",
         }));
     }
-    placeable(stated, count, key)?;
+    check_placement_memory(stated, count, key)?;
     Ok(count as usize)
 }
 
@@ -116,12 +120,12 @@ pub(super) fn fill(
     let cut = if spread > 0.0 { cut } else { 0.0 };
     let filling =
         RandomPlacement { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
-    let mut discs = random(&filling).map_err(|jammed| {
+    let mut discs = place_randomly(&filling).map_err(|jammed| {
         let error = stated.spot(&GENERATE).error(MistakeKind::Placement, jammed.to_string());
         error.advising("lower count or packing_fraction, or enlarge the box")
     })?;
     // Walls absorb momentum, so it is balanced without walls only.
     let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
-    stir(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
+    set_gaussian_velocities(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
     Ok(discs)
 }

@@ -1,13 +1,13 @@
 //! Creation of a scene's initial discs.
 
 use super::compressing::compressed;
-use super::filling::{JAMMING, MOST, disc, fill, grain_count, placeable};
+use super::filling::{JAMMING, MOST, check_placement_memory, disc, fill, grain_count};
 use super::meshing::on_mesh;
-use super::{StatedStart, readable};
+use super::{StatedStart, rounded_to_nine_digits};
 use crate::domain::Domain;
 use crate::number::significant;
 use crate::particles::{Particle, ParticleKind, Particles, in_space};
-use crate::placement::{WallRow, hexagonal, row};
+use crate::placement::{WallRow, hexagonal, wall_row};
 use crate::quoted;
 use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, DiscStart, FILE, FILL_HEIGHT, GeneratedDiscs, Key, List, MistakeKind, ORIGIN,
@@ -47,15 +47,15 @@ pub struct InitialState {
 ///
 /// # Errors
 /// [`SceneError`] if the start cannot be created.
-pub fn make(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
+pub fn create_initial_state(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
     let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
-    resolved(stated, &domain, radii(stated.start, None))?;
+    check_resolution(stated, &domain, radii(stated.start, None))?;
     let mut warnings = Vec::new();
     let (domain, mut particles) = match stated.start {
-        DiscStart::File(file) => (domain, from_file(stated, &domain, file, &mut warnings)?),
-        DiscStart::List(list) => (domain, listed(list)),
+        DiscStart::File(file) => (domain, read_start_file(stated, &domain, file, &mut warnings)?),
+        DiscStart::List(list) => (domain, listed_discs(list)),
         DiscStart::Hexagonal { count, packing_fraction, grains } => {
-            placeable(stated, *count as f64, &COUNT)?;
+            check_placement_memory(stated, *count as f64, &COUNT)?;
             on_lattice(stated, *count, *packing_fraction, grains)
         }
         DiscStart::Random { amount, grains } => {
@@ -72,7 +72,7 @@ pub fn make(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
             (domain, pipe(stated, &domain, *amount, grains, lining, *clear_width)?)
         }
         DiscStart::Box { amount, grains, lining, fill_height } => {
-            (domain, above_floor(stated, &domain, *amount, grains, lining, *fill_height)?)
+            (domain, place_above_floor(stated, &domain, *amount, grains, lining, *fill_height)?)
         }
     };
     let start_velocity = match stated.walls {
@@ -81,7 +81,7 @@ pub fn make(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
             amplitude.map(|a| a * (std::f64::consts::TAU * frequency))
         }
     };
-    resolved(stated, &domain, radii(stated.start, particles.radii()))?;
+    check_resolution(stated, &domain, radii(stated.start, particles.radii()))?;
     let moving = |disc: &&Particle| {
         disc.kind == ParticleKind::Wall
             && (disc.velocity != [0.0; 3] || disc.omega != 0.0)
@@ -111,7 +111,11 @@ pub fn make(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
 }
 
 /// Checks that floating-point numbers resolve positions in the box far better than the smallest radius, if known.
-fn resolved(stated: &StatedStart<'_>, domain: &Domain, radii: Option<[f64; 2]>) -> Result<(), SceneError> {
+fn check_resolution(
+    stated: &StatedStart<'_>,
+    domain: &Domain,
+    radii: Option<[f64; 2]>,
+) -> Result<(), SceneError> {
     /// Largest error of a position, relative to the smallest radius.
     const COARSEST: f64 = 1e-6;
     let Some([smallest, _]) = radii else { return Ok(()) };
@@ -135,7 +139,7 @@ fn resolved(stated: &StatedStart<'_>, domain: &Domain, radii: Option<[f64; 2]>) 
 }
 
 /// Discs of the last frame of a start file, whose box must be that of the scene.
-fn from_file(
+fn read_start_file(
     stated: &StatedStart<'_>,
     domain: &Domain,
     file: &StartFile,
@@ -189,7 +193,7 @@ fn from_file(
     Ok(frame.particles)
 }
 
-fn listed(list: &List) -> Particles {
+fn listed_discs(list: &List) -> Particles {
     let of = [list.radius, list.mass];
     let columns = list.velocities.iter().zip(&list.omegas).zip(&list.radii);
     let grains = list.positions.iter().zip(columns).zip(1..);
@@ -227,7 +231,7 @@ fn on_lattice(
 }
 
 /// Wall discs with ids after those of `count` grains.
-fn lined(
+fn place_wall_rows(
     stated: &StatedStart<'_>,
     domain: &Domain,
     rows: &[(f64, f64)],
@@ -243,13 +247,13 @@ fn lined(
         );
         return Err(stated.spot(&WALL_SPACING).error(MistakeKind::Placement, message));
     }
-    placeable(stated, each * rows.len() as f64 + count as f64, &WALL_SPACING)?;
+    check_placement_memory(stated, each * rows.len() as f64 + count as f64, &WALL_SPACING)?;
     let share = lining.radius / grains.radius;
     let mass = grains.mass * share * share;
     let mut walls: Vec<Particle> = Vec::new();
     for &(y, shift) in rows {
         let first_id = (count + walls.len()) as u32 + 1;
-        walls.extend(row(
+        walls.extend(wall_row(
             domain,
             &WallRow { y, shift, radius: lining.radius, spacing: lining.spacing, mass },
             first_id,
@@ -271,7 +275,7 @@ fn pipe(
     if 2.0 * reach >= domain.length(1) {
         let message = format!(
             "the centres of the two walls are {} apart, but the box is {} high",
-            readable(2.0 * reach),
+            rounded_to_nine_digits(2.0 * reach),
             domain.length(1)
         );
         let error = stated.spot(&CLEAR_WIDTH).error(MistakeKind::Outside, message);
@@ -279,7 +283,7 @@ fn pipe(
     }
     let count = grain_count(stated, amount, domain.length(0) * clear_width, grains, JAMMING)?;
     let rows = [(axis - reach, 0.0), (axis + reach, 0.5)];
-    let walls = lined(stated, domain, &rows, count, (lining, grains))?;
+    let walls = place_wall_rows(stated, domain, &rows, count, (lining, grains))?;
     let end = domain.origin[0] + domain.length(0);
     let room = [[domain.origin[0], axis - 0.5 * clear_width], [end, axis + 0.5 * clear_width]];
     let mut discs = fill(stated, domain, room, &walls, count, grains)?;
@@ -287,7 +291,7 @@ fn pipe(
     Ok(Particles::new(discs))
 }
 
-fn above_floor(
+fn place_above_floor(
     stated: &StatedStart<'_>,
     domain: &Domain,
     amount: Amount,
@@ -306,13 +310,13 @@ fn above_floor(
     if floor + fill_height > top {
         let message = format!(
             "grains would be placed up to {}, but the box ends at {top}",
-            readable(floor + fill_height)
+            rounded_to_nine_digits(floor + fill_height)
         );
         let error = stated.spot(&FILL_HEIGHT).error(MistakeKind::Outside, message);
         return Err(error.advising("raise the second of domain.sides, or lower fill_height"));
     }
     let count = grain_count(stated, amount, domain.length(0) * fill_height, grains, JAMMING)?;
-    let walls = lined(stated, domain, &[(centres, 0.0)], count, (lining, grains))?;
+    let walls = place_wall_rows(stated, domain, &[(centres, 0.0)], count, (lining, grains))?;
     let room = [[domain.origin[0], floor], [domain.origin[0] + domain.length(0), floor + fill_height]];
     let mut discs = fill(stated, domain, room, &walls, count, grains)?;
     discs.extend(walls);

@@ -1,11 +1,11 @@
 //! Discs at random sites of a mesh.
 
 use super::StatedStart;
-use super::filling::{MOST, disc, placeable};
+use super::filling::{MOST, check_placement_memory, disc};
 use crate::domain::Domain;
 use crate::number::significant;
 use crate::particles::{Particle, ParticleKind, Particles};
-use crate::placement::{mesh, stir};
+use crate::placement::{random_mesh_sites, set_gaussian_velocities};
 use crate::scene::{Amount, COUNT, GeneratedDiscs, MistakeKind, PACKING_FRACTION, SPACING, SceneError};
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ pub(super) fn on_mesh(
     spacing: f64,
 ) -> Result<Particles, SceneError> {
     let counts = [0, 1].map(|axis| (domain.length(axis) / spacing).floor().max(1.0));
-    let key = if stated.values.gives(&COUNT) { &COUNT } else { &PACKING_FRACTION };
+    let key = if stated.values.is_given(&COUNT) { &COUNT } else { &PACKING_FRACTION };
     let count = match amount {
         Amount::Count(count) => count as f64,
         Amount::PackingFraction(fraction) => {
@@ -52,9 +52,9 @@ pub(super) fn on_mesh(
         let error = stated.spot(&SPACING).error(MistakeKind::Placement, message);
         return Err(error.advising("set a larger particles.spacing"));
     }
-    placeable(stated, count, key)?;
+    check_placement_memory(stated, count, key)?;
     let edge = [0, 1].map(|axis| domain.length(axis) / counts[axis]);
-    let places = mesh(counts.map(|count| count as usize), count as usize, grains.seed);
+    let places = random_mesh_sites(counts.map(|count| count as usize), count as usize, grains.seed);
     let at = |[column, row]: [usize; 2]| {
         [0, 1].map(|axis| domain.origin[axis] + ([column, row][axis] as f64 + 0.5) * edge[axis])
     };
@@ -65,6 +65,6 @@ pub(super) fn on_mesh(
         .map(|(place, id)| disc(id, ParticleKind::Grain, at(place), grains.radius, of));
     let mut discs: Vec<Particle> = discs.collect();
     let balanced = domain.periodic() == [true; 2] && discs.len() > 1;
-    stir(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));
+    set_gaussian_velocities(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));
     Ok(Particles::new(discs))
 }

@@ -8,9 +8,9 @@ mod meshing;
 mod noise;
 
 pub use checks::outside;
-pub(crate) use checks::{deepest_overlap, noun, overlaps, readable};
+pub(crate) use checks::{deepest_overlap, disc_noun, overlaps, rounded_to_nine_digits};
 pub(crate) use making::radii;
-pub use making::{InitialState, make};
+pub use making::{InitialState, create_initial_state};
 pub(crate) use noise::noise_seed;
 
 use crate::particles::Particle;

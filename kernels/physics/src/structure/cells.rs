@@ -55,8 +55,8 @@ impl SampleCells {
             };
         }
         self.sort_into_box(discs);
-        self.lay_out(discs, sides);
-        self.share_out();
+        self.store_with_images(discs, sides);
+        self.split_into_tasks();
     }
 
     /// Sorts the discs of each cell of the box by their numbers.
@@ -90,7 +90,7 @@ impl SampleCells {
     }
 
     /// Stores cells with their images, row by row.
-    fn lay_out(&mut self, discs: &SampledDiscs, sides: [f64; 2]) {
+    fn store_with_images(&mut self, discs: &SampledDiscs, sides: [f64; 2]) {
         let image = |axis: usize, at: usize| {
             let (count, at) = (self.count[axis] as i64, at as i64 - self.margin[axis] as i64);
             (at.rem_euclid(count) as usize, at.div_euclid(count) as f64 * sides[axis])
@@ -120,7 +120,7 @@ impl SampleCells {
     }
 
     /// Splits the rows of the box into tasks by their discs, independent of the number of threads.
-    fn share_out(&mut self) {
+    fn split_into_tasks(&mut self) {
         self.parts.clear();
         let (mut begin, mut discs) = (0, 0);
         for row in 0..self.count[1] {

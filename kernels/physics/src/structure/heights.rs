@@ -47,7 +47,7 @@ impl Heights {
                 let radii = [low, high].map(|size| sizes[size].radius);
                 let near = |distance: f64, height: f64| {
                     let along = (distance * distance - height * height).max(0.0).sqrt();
-                    chance_along(setting.domain.sides[0], radii, along)
+                    probability_along(setting.domain.sides[0], radii, along)
                 };
                 let of_height = |at: usize| {
                     let height = at as f64 * step;
@@ -97,7 +97,7 @@ impl Heights {
 }
 
 /// Probability that discs of two radii, each anywhere along a side, are closer along it than some length.
-fn chance_along(side: BoxSide, radii: [f64; 2], way: f64) -> f64 {
+fn probability_along(side: BoxSide, radii: [f64; 2], way: f64) -> f64 {
     let room = match side {
         BoxSide::Closed(length) => radii.map(|radius| (length - 2.0 * radius).max(0.0)),
         _ => return (2.0 * way / side.length()).min(1.0),
@@ -140,7 +140,7 @@ mod tests {
             (BoxSide::Closed(10.0), [3.0, 1.0], 6.0, 1.0),
             (BoxSide::Closed(2.0), [1.0; 2], 0.0, 1.0),
         ] {
-            let found = chance_along(side, radii, way);
+            let found = probability_along(side, radii, way);
             assert!((found - chance).abs() < 1e-12, "{side:?} {radii:?} {way}: {found} in place of {chance}");
         }
     }

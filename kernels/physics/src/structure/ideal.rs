@@ -34,18 +34,18 @@ pub(super) struct DiscSize {
 }
 
 /// Probability of a pair of discs in each bin of distances. Walls and the connected area are those of the start.
-pub(super) fn chances(setting: &StructureSetting, particles: &Particles) -> Vec<f64> {
+pub(super) fn pair_probabilities(setting: &StructureSetting, particles: &Particles) -> Vec<f64> {
     let domain = &setting.domain;
     let has_walls = particles.grain_count() < particles.len();
     let sizes = sizes(particles.grains());
     if has_walls {
         let grids: Vec<ReachableGrid> =
             sizes.iter().map(|size| ReachableGrid::new(domain, size.radius, particles)).collect();
-        return of_sizes(setting, &sizes, |a, b, r| grids[a].share(&grids[b], r) / grids[b].area());
+        return average_over_sizes(setting, &sizes, |a, b, r| grids[a].share(&grids[b], r) / grids[b].area());
     }
     if sizes.len() > 1 && domain.periodic() != [true; 2] {
         let share = |a: usize, b: usize, r: f64| shared_area(domain, [sizes[a].radius, sizes[b].radius], r);
-        return of_sizes(setting, &sizes, share);
+        return average_over_sizes(setting, &sizes, share);
     }
     let [x, y] = setting.room();
     let closed = [0, 1].map(|axis| f64::from(!domain.is_periodic(axis)));
@@ -61,7 +61,7 @@ pub(super) fn chances(setting: &StructureSetting, particles: &Particles) -> Vec<
 }
 
 /// Averages the probability over pairs of sizes; `by_area` is the probability per unit of area at a distance.
-fn of_sizes(
+fn average_over_sizes(
     setting: &StructureSetting,
     sizes: &[DiscSize],
     by_area: impl Fn(usize, usize, f64) -> f64 + Sync,
@@ -263,11 +263,11 @@ mod tests {
         for (sides, periodic) in [([12.0, 9.0], [true, false]), ([12.0, 9.0], [false, false])] {
             let domain = Domain::planar([0.0; 2], sides, periodic);
             let setting = StructureSetting::new(domain, &discs);
-            let formula = chances(&setting, &discs);
+            let formula = pair_probabilities(&setting, &discs);
             let size = [DiscSize { radius: 0.5, count: 3.0 }];
-            let integral = of_sizes(&setting, &size, |_, _, r| shared_area(&domain, [0.5; 2], r));
+            let integral = average_over_sizes(&setting, &size, |_, _, r| shared_area(&domain, [0.5; 2], r));
             let grid = ReachableGrid::new(&domain, 0.5, &discs);
-            let sampled = of_sizes(&setting, &size, |_, _, r| grid.share(&grid, r) / grid.area());
+            let sampled = average_over_sizes(&setting, &size, |_, _, r| grid.share(&grid, r) / grid.area());
             assert!(formula.len() > 100);
             for ((formula, integral), sampled) in formula.into_iter().zip(integral).zip(sampled) {
                 assert!((integral / formula - 1.0).abs() < 1e-4, "{integral} {formula}");

@@ -4,7 +4,7 @@ use super::cells::SampleCells;
 use super::discs::SampledDiscs;
 use super::forces::{PairForces, Stress};
 use super::heights::Heights;
-use super::ideal::chances;
+use super::ideal::pair_probabilities;
 use super::neighbours::Neighbours;
 use super::pairs::Distances;
 use super::setting::StructureSetting;
@@ -56,20 +56,20 @@ impl StructureSample {
             neighbours: Neighbours::default(),
             waves: Waves::new(&setting),
             stress: Stress::default(),
-            chances: if by_area { chances(&setting, particles) } else { vec![] },
+            chances: if by_area { pair_probabilities(&setting, particles) } else { vec![] },
             heights: by_heights.then(|| Heights::new(&setting, particles)),
             asked,
         }
     }
 
     /// Samples the states that `put` stores; false if no disc is left.
-    pub fn at(&mut self, put: impl FnOnce(&mut GrainStates)) -> bool {
+    pub fn take_sample(&mut self, put: impl FnOnce(&mut GrainStates)) -> bool {
         put(&mut self.states);
-        self.take_up();
+        self.copy_states();
         if self.discs.x.is_empty() {
             return false;
         }
-        let asks = |what: SampleData| self.asks(what);
+        let asks = |what: SampleData| self.needs_data(what);
         let (distances, neighbours, waves) =
             (asks(SampleData::Distances), asks(SampleData::Neighbours), asks(SampleData::Waves));
         if distances || neighbours {
@@ -95,12 +95,12 @@ impl StructureSample {
     }
 
     /// True if an observable needs these data.
-    pub fn asks(&self, what: SampleData) -> bool {
+    pub fn needs_data(&self, what: SampleData) -> bool {
         self.asked.contains(&what)
     }
 
     /// Computes the forces between the discs of this moment, walls included.
-    pub fn meet(&mut self, particles: &Particles, forces: &PairForces) {
+    pub fn add_pair_forces(&mut self, particles: &Particles, forces: &PairForces) {
         self.stress.sum(&self.setting, particles.all(), forces);
     }
 
@@ -114,7 +114,7 @@ impl StructureSample {
     }
 
     /// Copies the states of the discs present into columns.
-    fn take_up(&mut self) {
+    fn copy_states(&mut self) {
         let SampledDiscs { x, y, vx, vy, radius, mass } = &mut self.discs;
         [&mut *x, y, vx, vy, radius, mass].into_iter().for_each(|column| column.clear());
         let there = self.states.rows().iter().zip(&self.sizes).filter(|(row, _)| !row[0].is_nan());
@@ -132,8 +132,8 @@ impl StructureSample {
 /// Hexatic order ψ6 of each disc, real and imaginary part: the mean of exp(6iθ) over the six nearest.
 pub fn hexatic_orders(setting: &StructureSetting, discs: &Particles) -> Vec<[f64; 2]> {
     let mut look = StructureSample::new(*setting, discs, std::iter::empty());
-    look.states.take_up(discs);
-    look.take_up();
+    look.states.store_grains(discs);
+    look.copy_states();
     if look.discs.x.is_empty() {
         return vec![];
     }
@@ -145,11 +145,15 @@ pub fn hexatic_orders(setting: &StructureSetting, discs: &Particles) -> Vec<[f64
 }
 
 /// Values of an observable for some discs, and their weights in a mean.
-pub fn seen(
+pub fn sampled_values(
     observable: &'static StructureObservable,
     setting: StructureSetting,
     discs: &Particles,
 ) -> [Vec<f64>; 2] {
     let mut look = StructureSample::new(setting, discs, std::iter::once(observable));
-    if look.at(|states| states.take_up(discs)) { look.values(observable) } else { [vec![], vec![]] }
+    if look.take_sample(|states| states.store_grains(discs)) {
+        look.values(observable)
+    } else {
+        [vec![], vec![]]
+    }
 }

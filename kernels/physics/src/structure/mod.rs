@@ -23,7 +23,7 @@ mod work;
 pub(crate) use blocks::{Block, Blocks};
 pub use forces::{PairForces, forces_on_each, net_forces};
 pub use list::OBSERVABLES;
-pub use look::{StructureSample, hexatic_orders, seen};
+pub use look::{StructureSample, hexatic_orders, sampled_values};
 pub use motion::{MotionHistory, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
 pub use setting::StructureSetting;

@@ -131,7 +131,7 @@ impl MotionHistory {
 
     /// Adds a sample: unwrapped discs in the order of the scene, at a time. Passes each pair of samples separated by a lag to `meet`: the number of
     /// the earlier sample, the index of the lag, and the means over the discs of Δx², Δy² and the products of velocities along x and y.
-    pub fn look(&mut self, discs: &[[f64; 4]], time: f64, mut meet: impl FnMut(u64, usize, [f64; 4])) {
+    pub fn add_sample(&mut self, discs: &[[f64; 4]], time: f64, mut meet: impl FnMut(u64, usize, [f64; 4])) {
         let mut states = self.spare.pop().unwrap_or_default();
         states.clear();
         states.extend_from_slice(discs);

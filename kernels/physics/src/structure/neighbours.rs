@@ -2,7 +2,7 @@
 
 use super::cells::{AT_ONCE, SampleCells};
 use super::discs::SampledDiscs;
-use super::pairs::ways;
+use super::pairs::displacements_from;
 use super::setting::StructureSetting;
 use crate::domain::Domain;
 use rayon::iter::{
@@ -59,10 +59,10 @@ struct NeighbourSums {
 impl Neighbours {
     /// Search radius for neighbours and the six nearest (length).
     pub(super) fn reach(setting: &StructureSetting, discs: usize) -> f64 {
-        (2.0 * NEIGHBOURS * setting.largest_radius).max(Neighbours::looked_for(setting, discs)[2])
+        (2.0 * NEIGHBOURS * setting.largest_radius).max(Neighbours::search_radii(setting, discs)[2])
     }
 
-    fn looked_for(setting: &StructureSetting, discs: usize) -> [f64; 3] {
+    fn search_radii(setting: &StructureSetting, discs: usize) -> [f64; 3] {
         let [x, y] = setting.room();
         let apart = (x * y / discs as f64).sqrt();
         LOOKED_FOR.map(|distances| distances * apart)
@@ -86,7 +86,7 @@ impl Neighbours {
             halves: vec![],
         };
         self.parts.resize(cells.parts.len(), none);
-        let looked_for = Neighbours::looked_for(setting, discs.x.len());
+        let looked_for = Neighbours::search_radii(setting, discs.x.len());
         let (largest, keeps_each) = (setting.largest_radius, self.keeps_each);
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(|(around, rows)| {
             let rows = rows.clone();
@@ -144,7 +144,7 @@ impl RegisterTask<f64> for NeighbourTask<'_> {
             for own in cells.own(row) {
                 let own_radius = radius[cells.number[own] as usize];
                 let near = (NEIGHBOURS * (own_radius + largest)).max(looked_for[0]);
-                let mut found = around.look(cells, row, own, near, halves);
+                let mut found = around.search_within(cells, row, own, near, halves);
                 let neighbours =
                     around.places[..found].iter().zip(&around.squares).filter(|&(&at, &square)| {
                         let reach = NEIGHBOURS * (own_radius + radius[cells.number[at] as usize]);
@@ -158,11 +158,11 @@ impl RegisterTask<f64> for NeighbourTask<'_> {
                 }
                 for reach in [looked_for[1], looked_for[2]] {
                     if found < wanted && near < reach {
-                        found = around.look(cells, row, own, reach, halves);
+                        found = around.search_within(cells, row, own, reach, halves);
                     }
                 }
                 if found < wanted {
-                    found = around.look_at_all(domain, discs, cells.number[own] as usize);
+                    found = around.search_everywhere(domain, discs, cells.number[own] as usize);
                 }
                 let [x, y] = around.hexatic(found);
                 if found > 0 {
@@ -195,7 +195,7 @@ impl NeighbourSums {
     /// Stores the discs nearer than `reach` (length) to a disc, without itself and each by its nearest image within half a side, and returns their
     /// number. Entries beyond it are at infinite distance.
     #[inline(always)]
-    fn look(
+    fn search_within(
         &mut self,
         cells: &SampleCells,
         row: usize,
@@ -222,7 +222,7 @@ impl NeighbourSums {
                 self.places.resize(room, 0);
             }
             for begin in (span.start..span.end).step_by(AT_ONCE) {
-                let [right, up, squares] = ways(cells, begin, [x, y]);
+                let [right, up, squares] = displacements_from(cells, begin, [x, y]);
                 // The entry is written in any case and overwritten if it is too far.
                 for at in 0..AT_ONCE.min(span.end - begin) {
                     self.squares[found] = squares[at];
@@ -241,7 +241,7 @@ impl NeighbourSums {
     }
 
     /// Stores all other discs, at any distance.
-    fn look_at_all(&mut self, domain: &Domain, discs: &SampledDiscs, own: usize) -> usize {
+    fn search_everywhere(&mut self, domain: &Domain, discs: &SampledDiscs, own: usize) -> usize {
         for column in [&mut self.squares, &mut self.right, &mut self.up] {
             column.clear();
         }
@@ -321,7 +321,7 @@ fn most_neighbours(setting: &StructureSetting) -> usize {
 pub(super) fn candidates(setting: &StructureSetting, discs: usize) -> f64 {
     let [x, y] = setting.room();
     let near = (NEIGHBOURS * (0.5 * setting.diameter + setting.largest_radius))
-        .max(Neighbours::looked_for(setting, discs)[0]);
+        .max(Neighbours::search_radii(setting, discs)[0]);
     (PI * near * near * discs as f64 / (x * y)).min(discs as f64)
 }
 

@@ -74,7 +74,7 @@ impl RegisterTask<f64> for PairCountTask<'_> {
                     let span = cells.span(row, up, x, half);
                     let first = if up == 0 { own + 1 } else { span.start };
                     for begin in (first..span.end).step_by(AT_ONCE) {
-                        let [_, _, squares] = ways(cells, begin, [x, y]);
+                        let [_, _, squares] = displacements_from(cells, begin, [x, y]);
                         let bins = squares.map(|square| {
                             let bin = square.sqrt() * by_length;
                             let bin = if bin < far { bin } else { far };
@@ -93,7 +93,7 @@ impl RegisterTask<f64> for PairCountTask<'_> {
 
 /// Vectors from a position to consecutive discs along x and y (length), and the squared distances.
 #[inline(always)]
-pub(super) fn ways(cells: &SampleCells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_ONCE]; 3] {
+pub(super) fn displacements_from(cells: &SampleCells, first: usize, [x, y]: [f64; 2]) -> [[f64; AT_ONCE]; 3] {
     let [mut right, mut up, mut squares] = [[0.0; AT_ONCE]; 3];
     right.copy_from_slice(&cells.x[first..first + AT_ONCE]);
     up.copy_from_slice(&cells.y[first..first + AT_ONCE]);
@@ -121,7 +121,7 @@ pub fn pair_counts_of_all(setting: &StructureSetting, discs: &[Particle]) -> Vec
     let mut counts = vec![0; bins(setting)];
     for (number, own) in discs.iter().enumerate() {
         for other in &discs[number + 1..] {
-            let [x, y] = setting.domain.displacement(own.place(), other.place());
+            let [x, y] = setting.domain.displacement(own.planar_position(), other.planar_position());
             let bin = ((x * x + y * y).sqrt() * (BINS / setting.diameter)) as usize;
             counts.iter_mut().skip(bin).take(1).for_each(|count| *count += 1);
         }

@@ -70,8 +70,8 @@ impl<L: Precision> RegisterTask<L> for TapeRun<'_, L> {
     #[inline(always)]
     fn on<R: Registers<Lane = L>>(self, hardware: R) {
         let strip = self.strip.min(self.range.len());
-        let mut whole: Box<RegisterFiles<R>> = pool::take();
-        let mut rest: Box<RegisterFiles<Scalar<L>>> = pool::take();
+        let mut whole: Box<RegisterFiles<R>> = pool::take_pooled();
+        let mut rest: Box<RegisterFiles<Scalar<L>>> = pool::take_pooled();
         whole.provide(hardware, self.tape, strip / R::LANES);
         rest.provide(Scalar::default(), self.tape, strip.min(R::LANES - 1));
         for base in self.range.clone().step_by(strip.max(1)) {
@@ -81,8 +81,8 @@ impl<L: Precision> RegisterTask<L> for TapeRun<'_, L> {
             let elements = length % R::LANES;
             rest.execute_elements(self.tape, self.memory, base + length - elements, elements);
         }
-        pool::give_back(whole);
-        pool::give_back(rest);
+        pool::return_to_pool(whole);
+        pool::return_to_pool(rest);
     }
 }
 

@@ -12,7 +12,7 @@ thread_local! {
 
 /// Takes this thread's `T` out of the pool; creates a default if there is none or another run uses it.
 #[inline(never)]
-pub(super) fn take<T: Default + 'static>() -> Box<T> {
+pub(super) fn take_pooled<T: Default + 'static>() -> Box<T> {
     let kept = KEPT.with_borrow_mut(|kept| {
         let at = kept.iter().position(|any| any.is::<T>());
         at.and_then(|at| kept.swap_remove(at).downcast::<T>().ok())
@@ -22,7 +22,7 @@ pub(super) fn take<T: Default + 'static>() -> Box<T> {
 
 /// Returns it to the pool for the next run.
 #[inline(never)]
-pub(super) fn give_back<T: 'static>(kept: Box<T>) {
+pub(super) fn return_to_pool<T: 'static>(kept: Box<T>) {
     KEPT.with_borrow_mut(|all| all.push(kept));
 }
 
@@ -32,11 +32,11 @@ mod tests {
 
     #[test]
     fn pool_reuses_returned_values_only() {
-        let mut kept: Box<Vec<u8>> = take();
+        let mut kept: Box<Vec<u8>> = take_pooled();
         kept.push(1);
-        assert!(take::<Vec<u8>>().is_empty());
-        give_back(kept);
-        assert!(take::<Vec<u16>>().is_empty());
-        assert_eq!(*take::<Vec<u8>>(), [1]);
+        assert!(take_pooled::<Vec<u8>>().is_empty());
+        return_to_pool(kept);
+        assert!(take_pooled::<Vec<u16>>().is_empty());
+        assert_eq!(*take_pooled::<Vec<u8>>(), [1]);
     }
 }

@@ -25,10 +25,10 @@ use crate::backend::{GROUP, InstructionSet, Precision, dispatch_estimating, disp
 use crate::isa::ProgramError;
 use crate::isa::Storage;
 use crate::law::{self, Law, ParticleField};
-use crate::threads::{alone_if, on_threads, pieces};
+use crate::threads::{on_threads, pieces, single_threaded_if};
 use std::array::from_fn;
 use std::ops::Range;
-use tile::{BandRows, Tile, asks_for_velocity};
+use tile::{BandRows, Tile, reads_velocity};
 
 /// Largest number of bands: a constant, because the order of summation depends on it.
 pub const BANDS: usize = 32;
@@ -87,7 +87,7 @@ pub struct AllPairsOptions<'a> {
 
 /// Length of a column for `bodies` bodies: whole groups.
 #[inline]
-pub const fn padded(bodies: usize) -> usize {
+pub const fn padded_length(bodies: usize) -> usize {
     bodies.next_multiple_of(GROUP)
 }
 
@@ -96,7 +96,7 @@ pub const fn padded(bodies: usize) -> usize {
 /// Bodies do not come near it, and no square or cube of a distance to it overflows: entries without mass then add zeros, never 0
 /// · ∞. In single precision the unit of length must be about the size of the system.
 #[inline]
-pub fn padding<P: Precision>(n: usize) -> P {
+pub fn padding_position<P: Precision>(n: usize) -> P {
     let far = if is_split::<P>() { 1e12 } else { 1e100 };
     P::from_f64(far * (1.0 + n as f64 / GROUP as f64))
 }
@@ -123,7 +123,7 @@ pub struct AllPairs<P, const SUMS: usize = 3> {
 impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     /// Bands and buffers for a number of bodies.
     pub fn new(bodies: usize) -> Self {
-        let groups = padded(bodies) / GROUP;
+        let groups = padded_length(bodies) / GROUP;
         let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
         let band = |rows: Range<usize>| {
             let behind = (groups - rows.start) * GROUP;
@@ -139,7 +139,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
 
     /// Memory in bytes of the sums for a number of bodies.
     pub fn bytes(bodies: usize) -> usize {
-        let groups = padded(bodies) / GROUP;
+        let groups = padded_length(bodies) / GROUP;
         let bands = rows_of_equal_work(groups, (groups / SMALLEST_BAND).clamp(1, BANDS));
         bands.iter().map(|rows| (groups - rows.start) * GROUP * SUMS * P::BYTES).sum()
     }
@@ -157,7 +157,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         sums: [&mut [P]; SUMS],
         manner: &AllPairsOptions<'_>,
     ) -> Result<[f64; 2], ProgramError> {
-        self.meet(law, bodies, 0..self.bands.len(), manner)?;
+        self.sweep_bands(law, bodies, 0..self.bands.len(), manner)?;
         self.finish(sums)
     }
 
@@ -185,7 +185,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     ///
     /// # Errors
     /// As [`sweep`](Self::sweep).
-    pub fn meet<L: Law<3> + Sync>(
+    pub fn sweep_bands<L: Law<3> + Sync>(
         &mut self,
         law: &L,
         bodies: &BodyColumns<'_, P>,
@@ -202,14 +202,14 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
             return Err(ProgramError::Unstated(sum.name()));
         }
         let entries = self.groups * GROUP;
-        let velocity = bodies.velocity.into_iter().filter(|_| asks_for_velocity(L::FIELDS));
+        let velocity = bodies.velocity.into_iter().filter(|_| reads_velocity(L::FIELDS));
         let rest = bodies.rest.into_iter().filter(|_| is_split::<P>());
         let columns = bodies.position.into_iter().chain([bodies.mass]).chain(rest).chain(velocity);
-        columns.map(<[P]>::len).try_for_each(|length| suffices(length, entries))?;
-        alone_if(entries <= ALONE, || self.meet_checked(law, bodies, bands, manner))
+        columns.map(<[P]>::len).try_for_each(|length| check_length(length, entries))?;
+        single_threaded_if(entries <= ALONE, || self.sweep_checked_bands(law, bodies, bands, manner))
     }
 
-    fn meet_checked<L: Law<3> + Sync>(
+    fn sweep_checked_bands<L: Law<3> + Sync>(
         &mut self,
         law: &L,
         bodies: &BodyColumns<'_, P>,
@@ -254,8 +254,8 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     /// [`ProgramError`] if the length of a sum is not [`padded`].
     pub fn finish(&self, sums: [&mut [P]; SUMS]) -> Result<[f64; 2], ProgramError> {
         let entries = self.groups * GROUP;
-        sums.iter().try_for_each(|sums| suffices(sums.len(), entries))?;
-        alone_if(entries <= ALONE, || self.finish_checked(sums))
+        sums.iter().try_for_each(|sums| check_length(sums.len(), entries))?;
+        single_threaded_if(entries <= ALONE, || self.finish_checked(sums))
     }
 
     fn finish_checked(&self, sums: [&mut [P]; SUMS]) -> Result<[f64; 2], ProgramError> {
@@ -288,7 +288,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
 }
 
 /// Returns an error unless a column has `entries` entries.
-fn suffices(length: usize, entries: usize) -> Result<(), ProgramError> {
+fn check_length(length: usize, entries: usize) -> Result<(), ProgramError> {
     let last = entries as isize - 1;
     if length == entries {
         return Ok(());

@@ -195,7 +195,8 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             // SAFETY: the group's entries exist, and a part is one register of them.
             let partner = unsafe { Self::partner(registers, bodies, at) };
             for (n, own) in own.into_iter().enumerate() {
-                let (own, partner) = apart(registers, own, partner, (start + first + n).wrapping_sub(at));
+                let (own, partner) =
+                    without_self_force(registers, own, partner, (start + first + n).wrapping_sub(at));
                 let own_sums = &own_sums[n][part % kept];
                 let meeting = TileEnv::<R, SUMS, false> {
                     registers,
@@ -205,7 +206,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                     observed,
                     energy: &energies[0][part % kept],
                 };
-                meet(law, &meeting, partner);
+                evaluate_pair(law, &meeting, partner);
             }
         }
         let base = groups.start * GROUP;
@@ -214,9 +215,9 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
         let mut left = SPELL;
         while at < behind {
             if left == 0 {
-                take(registers, &own_sums, kept, &mut spelled);
+                flush_sums(registers, &own_sums, kept, &mut spelled);
                 if observed {
-                    take(registers, &energies, kept, &mut spelled_energies);
+                    flush_sums(registers, &energies, kept, &mut spelled_energies);
                 }
                 left = SPELL;
             }
@@ -239,7 +240,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
                         observed,
                         energy: &energies[0][part % kept],
                     };
-                    meet(law, &meeting, partner);
+                    evaluate_pair(law, &meeting, partner);
                 }
                 for sum in 0..SUMS {
                     // SAFETY: `to` points at sums of whole groups, of which a part is one register.
@@ -248,7 +249,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             }
             at += GROUP;
         }
-        take(registers, &own_sums, kept, &mut spelled);
+        flush_sums(registers, &own_sums, kept, &mut spelled);
         for (n, spelled) in spelled.iter().enumerate() {
             for (sums, spelled) in sums.iter_mut().zip(spelled) {
                 let to = &mut sums[start + first + n - base];
@@ -256,7 +257,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
             }
         }
         if observed {
-            take(registers, &energies, kept, &mut spelled_energies);
+            flush_sums(registers, &energies, kept, &mut spelled_energies);
             total.iter_mut().zip(spelled_energies[0]).for_each(|(to, spelled)| *to += spelled);
         }
     }
@@ -293,7 +294,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
         bodies: &BodyColumns<'_, P>,
         of: impl Fn(&[P]) -> R::V,
     ) -> PartnerBodies<R::V> {
-        let velocity = match const { asks_for_velocity(L::FIELDS) } {
+        let velocity = match const { reads_velocity(L::FIELDS) } {
             true => bodies.velocity.map(&of),
             false => [registers.splat(P::default()); 3],
         };
@@ -306,7 +307,7 @@ impl<P: Precision, L: Law<3>, const SUMS: usize, const EXACT: bool> Tile<'_, P, 
 }
 
 /// True if a law that states these fields reads velocities.
-pub(super) const fn asks_for_velocity(fields: &[ParticleField]) -> bool {
+pub(super) const fn reads_velocity(fields: &[ParticleField]) -> bool {
     let mut i = 0;
     while i < fields.len() {
         if matches!(fields[i], ParticleField::Velocity(_)) {
@@ -319,7 +320,7 @@ pub(super) const fn asks_for_velocity(fields: &[ParticleField]) -> bool {
 
 /// Evaluates the law for a register of pairs.
 #[inline(always)]
-fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
+fn evaluate_pair<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
     law: &L,
     meeting: &TileEnv<'_, R, SUMS, BOTH>,
     partner: PartnerBodies<R::V>,
@@ -332,7 +333,7 @@ fn meet<R: Registers, L: Law<3>, const SUMS: usize, const BOTH: bool>(
 /// Removes a body's interaction with itself. In the body's own lane the partner gets no mass and distance 1, so the force is
 /// zero, with or without softening, at any position.
 #[inline(always)]
-fn apart<R: Registers>(
+fn without_self_force<R: Registers>(
     registers: R,
     own: PartnerBodies<R::V>,
     partner: PartnerBodies<R::V>,
@@ -358,7 +359,7 @@ fn apart<R: Registers>(
 
 /// Adds the sums in the registers to `into` and sets them to zero.
 #[inline(always)]
-fn take<R: Registers, const SUMS: usize, const BODIES: usize>(
+fn flush_sums<R: Registers, const SUMS: usize, const BODIES: usize>(
     registers: R,
     own_sums: &[[BodySums<R::V, SUMS>; GROUP]; BODIES],
     kept: usize,
@@ -372,14 +373,14 @@ fn take<R: Registers, const SUMS: usize, const BODIES: usize>(
                 // SAFETY: part · LANES + LANES <= GROUP.
                 unsafe { registers.store(lanes.as_mut_ptr().add(part * R::LANES), sums[sum].replace(zero)) };
             }
-            *into += of_lanes(lanes).to_f64();
+            *into += sum_of_lanes(lanes).to_f64();
         }
     }
 }
 
 /// Sum of all lanes, by repeated halving.
 #[inline(always)]
-fn of_lanes<P: Element>(mut lanes: [P; GROUP]) -> P {
+fn sum_of_lanes<P: Element>(mut lanes: [P; GROUP]) -> P {
     let mut half = GROUP / 2;
     while half > 0 {
         for lane in 0..half {

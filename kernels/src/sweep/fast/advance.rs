@@ -23,7 +23,7 @@ use crate::InstructionSet;
 use crate::backend::{Precision, Registers, Scalar};
 use crate::backend::{RegisterTask, dispatch_native};
 use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
-use crate::isa::{Element, Predicate, ProgramError, Vector, same};
+use crate::isa::{Element, Predicate, ProgramError, Vector, is_same_storage};
 use crate::noise::{self, NoiseSource, RandomPurpose};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
@@ -77,7 +77,7 @@ impl PassReport {
     /// Joins these discs with those of a pass over later discs.
     #[must_use]
     #[inline]
-    pub fn and(mut self, behind: PassReport) -> PassReport {
+    pub fn joined_with(mut self, behind: PassReport) -> PassReport {
         self.left.extend(behind.left);
         self.far.extend(behind.far);
         self
@@ -115,13 +115,13 @@ impl<C: Scheme> EquationOfMotion<C> {
         };
         match parts {
             1 => noise::draw(seed, RandomPurpose::Thermostat, first, ids, to),
-            _ => self.combine(first, ids, to),
+            _ => self.combine_noise(first, ids, to),
         }
     }
 
     /// Combines the numbers of a step from those of its parts, which are numbered from `first`.
     #[inline(never)]
-    fn combine<S: Element>(&self, first: u64, ids: &[u32], [across, along]: [&mut [S]; 2]) {
+    fn combine_noise<S: Element>(&self, first: u64, ids: &[u32], [across, along]: [&mut [S]; 2]) {
         let weights = self.scheme.noise_weights(self.noise.parts);
         for ((id, x), y) in ids.iter().zip(across).zip(along) {
             let mut sums = [0.0; 2];
@@ -257,7 +257,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         };
         let mut all = PassReport::default();
         for passed in on_threads(pieces(discs, BAND), pass) {
-            all = all.and(passed?);
+            all = all.joined_with(passed?);
         }
         Ok(all)
     }
@@ -308,11 +308,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> RegisterTask<S>
             }
             while first + R::LANES <= some.end {
                 let from = first - some.start;
-                self.register(registers, first, [&noise[0][from..], &noise[1][from..]]);
+                self.advance_register(registers, first, [&noise[0][from..], &noise[1][from..]]);
                 first += R::LANES;
             }
             let from = first - some.start;
-            self.elements(first..some.end, [&noise[0][from..], &noise[1][from..]]);
+            self.advance_singly(first..some.end, [&noise[0][from..], &noise[1][from..]]);
             first = some.end;
         }
     }
@@ -321,16 +321,16 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> RegisterTask<S>
 impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, C, FREEDOMS> {
     /// Advances the discs that do not fill a register one by one. The bits are the same, so one copy serves all register files.
     #[inline(never)]
-    fn elements(&mut self, discs: Range<usize>, [x, y]: [&[S]; 2]) {
+    fn advance_singly(&mut self, discs: Range<usize>, [x, y]: [&[S]; 2]) {
         for (number, disc) in discs.enumerate() {
-            self.register(Scalar::<S>::default(), disc, [&x[number..], &y[number..]]);
+            self.advance_register(Scalar::<S>::default(), disc, [&x[number..], &y[number..]]);
         }
     }
 
     /// Advances one register of discs from `first` on, with their random numbers along x and y.
     #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
-    fn register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
+    fn advance_register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
         let (mut place, mut velocity) = ([uniform(0.0); 2], [uniform(0.0); 2]);
@@ -346,7 +346,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         for freedom in 0..FREEDOMS {
             // SAFETY: Advance has checked that every sum has an entry for every moving disc, which includes those of a register;
             // this thread alone works on them.
-            let force = unsafe { take(registers, arrays.sums[freedom].add(first)) };
+            let force = unsafe { take_sums(registers, arrays.sums[freedom].add(first)) };
             let inverse = motion.inertia.inverse(freedom, uniform, || {
                 // SAFETY: where discs vary, Advance has checked that these columns have an entry for every moving disc.
                 unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
@@ -392,8 +392,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         let creeps = (velocity[0] * velocity[0] + velocity[1] * velocity[1]).less_equal(uniform(self.square));
         let moved = registers.bits(stays.and(creeps).not());
         if moved != 0 {
-            list(registers.bits(stays.not()), first, R::LANES, &mut self.passed.left);
-            list(registers.bits(creeps.not()), first, R::LANES, &mut self.passed.far);
+            list_discs(registers.bits(stays.not()), first, R::LANES, &mut self.passed.left);
+            list_discs(registers.bits(creeps.not()), first, R::LANES, &mut self.passed.far);
         }
         if !arrays.copies_places {
             return;
@@ -423,7 +423,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
 
 /// Lists the discs of a register from `first` on whose bits are set.
 #[inline(never)]
-fn list(bits: u64, first: usize, lanes: usize, to: &mut Vec<u32>) {
+fn list_discs(bits: u64, first: usize, lanes: usize, to: &mut Vec<u32>) {
     to.extend((0..lanes).filter(|lane| bits >> lane & 1 == 1).map(|lane| (first + lane) as u32));
 }
 
@@ -432,8 +432,8 @@ fn list(bits: u64, first: usize, lanes: usize, to: &mut Vec<u32>) {
 /// # Safety
 /// There are at least as many sums as a register has lanes, at most 16, and no other thread touches them.
 #[inline(always)]
-unsafe fn take<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
-    if same::<P, R::Lane>() {
+unsafe fn take_sums<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
+    if is_same_storage::<P, R::Lane>() {
         // SAFETY: P is Lane, and the caller promises LANES sums that belong to this thread.
         return unsafe {
             let value = registers.load(sums.cast());

@@ -85,7 +85,7 @@ pub struct BandReport {
 impl SweepReport {
     /// Adds up the bands in their order.
     #[inline]
-    pub fn of(of_bands: Vec<BandReport>) -> SweepReport {
+    pub fn from_bands(of_bands: Vec<BandReport>) -> SweepReport {
         let mut met = SweepReport::default();
         for band in &of_bands {
             met.pairs += band.pairs;
@@ -118,7 +118,7 @@ const PARTS: usize = 8;
 
 /// True if it is cheaper that all threads find the pairs of one band after the other and one thread evaluates them, than that
 /// each thread does all the work of a band. `tried` is the number of pairs tried per disc. No bit depends on the choice.
-fn is_cheaper_apart(tried: f64, bands: usize, threads: usize) -> bool {
+fn is_joint_search_cheaper(tried: f64, bands: usize, threads: usize) -> bool {
     tried / (threads as f64) + EVALUATION < (tried + EVALUATION) / bands.min(threads) as f64
 }
 
@@ -126,7 +126,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// Sweep over these rows.
     #[inline]
     pub fn new(rows: RowLayout) -> Self {
-        Sweep::of_share(rows, None)
+        Sweep::for_share(rows, None)
     }
 
     /// Sweep over one rank's share of the rows. Sums are right for all discs within the margin of the share's rows, if the discs
@@ -135,7 +135,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
     /// A rank repeats the pairs of a neighbouring band for discs it holds there, in the same order. Sums received from the other
     /// rank could not be added in the order of a single rank.
     #[inline]
-    pub fn of_share(rows: RowLayout, share: Option<&RankShare>) -> Self {
+    pub fn for_share(rows: RowLayout, share: Option<&RankShare>) -> Self {
         let ahead = rows.ahead;
         let bands = rows.bands().map(|band| {
             let inner = band.end.saturating_sub(ahead).max(band.start);
@@ -147,7 +147,8 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                 Some(share) => {
                     let near = [share.margin + ahead, share.margin];
                     let [first, last, beside] = stages;
-                    let of = |stage: &Range<usize>, near: [usize; 2]| share.near(stage, near, rows.count);
+                    let of =
+                        |stage: &Range<usize>, near: [usize; 2]| share.rows_near(stage, near, rows.count);
                     [of(&first, near), of(&last, near), of(&beside, [near[0], near[0]])]
                 }
             };
@@ -179,7 +180,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         law::check(law)?;
         let count = finder.discs();
         assert!(
-            discs.suffice(L::FIELDS, count),
+            discs.has_all_entries(L::FIELDS, count),
             "a column does not have an entry for each of {count} discs and {SENTINELS} sentinels"
         );
         let mut columns = sums.map(|sum| (sum.len(), sum.as_mut_ptr()));
@@ -206,12 +207,12 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             Ok(())
         };
         let threads = threads();
-        if is_cheaper_apart(finder.tried(), self.bands.len(), threads) {
+        if is_joint_search_cheaper(finder.pairs_tried(), self.bands.len(), threads) {
             self.parts.resize_with(PARTS * threads, F::default);
             for stage in 0..2 {
                 for RowBand { rows, notes, pairs: met, .. } in &mut self.bands {
                     for rows in &rows[stage] {
-                        let all = finder.searched(rows.clone());
+                        let all = finder.search_items(rows.clone());
                         let length = all.len().div_ceil(PARTS * threads).max(1);
                         let cut = pieces(all, length).zip(&mut self.parts);
                         let searched = on_threads(cut, |(part, found)| {
@@ -234,7 +235,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         }
         for RowBand { rows, notes, pairs: met, .. } in &mut self.bands {
             let mut beside = PairBuffer::default();
-            rows[2].iter().for_each(|rows| finder.find_beside(rows.clone(), &mut beside));
+            rows[2].iter().for_each(|rows| finder.find_extra_pairs(rows.clone(), &mut beside));
             let pairs = &beside;
             if pairs.count() > 0 {
                 *met += pairs.count() as u64;
@@ -257,6 +258,6 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             }
             notes.clear();
         }
-        Ok(SweepReport { deep, not_finite, ..SweepReport::of(of_bands) })
+        Ok(SweepReport { deep, not_finite, ..SweepReport::from_bands(of_bands) })
     }
 }

@@ -59,7 +59,7 @@ impl<'a, S: Element> DiscColumns<'a, S> {
 
     /// True if every column that a law reads has an entry for every disc and sentinel.
     #[inline]
-    pub(super) fn suffice(&self, fields: &[ParticleField], discs: usize) -> bool {
+    pub(super) fn has_all_entries(&self, fields: &[ParticleField], discs: usize) -> bool {
         let columns = fields.iter().map(|&field| self.column(field)).chain(self.place);
         columns.into_iter().all(|column| column.len() == discs + SENTINELS)
     }
@@ -259,7 +259,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
         let mut notes = std::mem::take(self.notes);
         let mut first = 0;
         while first < self.pairs.count() {
-            self.register::<R>(registers, first, &mut notes);
+            self.evaluate_register::<R>(registers, first, &mut notes);
             first += R::LANES;
         }
         *self.notes = notes;
@@ -269,7 +269,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
 impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P, L, Q> {
     #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
-    fn register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut BandNotes) {
+    fn evaluate_register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut BandNotes) {
         let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
@@ -358,12 +358,12 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P,
             let depth = registers.splat(P::from_f64(depth));
             let bits = registers.bits(depth.less_than(gathered.penetration.get()));
             if bits != 0 {
-                list(bits, count, [&own, &partner], &mut notes.deep);
+                list_pairs(bits, count, [&own, &partner], &mut notes.deep);
             }
         }
         let finite = registers.bits(magnitude.less_than(registers.splat(P::from_f64(f64::INFINITY))));
         if finite.trailing_ones() < R::LANES as u32 {
-            list(!finite, count, [&own, &partner], &mut notes.not_finite);
+            list_pairs(!finite, count, [&own, &partner], &mut notes.not_finite);
         }
     }
 }
@@ -380,6 +380,6 @@ fn deepest<P: Element>(values: &LaneArray<P>, count: usize, before: f64) -> f64 
 }
 
 /// Lists the pairs whose bits are set.
-fn list(bits: u64, count: usize, [own, partner]: [&LaneArray<u32>; 2], to: &mut Vec<DiscPair>) {
+fn list_pairs(bits: u64, count: usize, [own, partner]: [&LaneArray<u32>; 2], to: &mut Vec<DiscPair>) {
     to.extend((0..count).filter(|lane| bits >> lane & 1 == 1).map(|lane| [own[lane], partner[lane]]));
 }

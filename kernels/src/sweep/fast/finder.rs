@@ -41,7 +41,12 @@ impl RankShare {
     /// The part of `rows` at most `below` rows before the share's rows or `above` rows behind them. Rows are periodic with
     /// `count`.
     #[inline]
-    pub fn near(&self, rows: &Range<usize>, [below, above]: [usize; 2], count: usize) -> Vec<Range<usize>> {
+    pub fn rows_near(
+        &self,
+        rows: &Range<usize>,
+        [below, above]: [usize; 2],
+        count: usize,
+    ) -> Vec<Range<usize>> {
         let near = (self.rows.start + count).saturating_sub(below)..self.rows.end + count + above;
         let mut found: Vec<Range<usize>> = vec![];
         for around in 0..3 {
@@ -94,13 +99,13 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
 
     /// Average number of pairs tried per disc if the search of a row can be cut into [parts](Self::find_part), else 0.
     #[inline]
-    fn tried(&self) -> f64 {
+    fn pairs_tried(&self) -> f64 {
         0.0
     }
 
     /// Numbers, in search order, of the items searched in some rows; any cut of this range is a valid division into parts.
     #[inline]
-    fn searched(&self, _rows: Range<usize>) -> Range<usize> {
+    fn search_items(&self, _rows: Range<usize>) -> Range<usize> {
         0..0
     }
 
@@ -111,7 +116,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
 
     /// Appends pairs of some rows that the regular search does not find.
     #[inline]
-    fn find_beside(&self, _rows: Range<usize>, _: &mut PairBuffer<P>) {}
+    fn find_extra_pairs(&self, _rows: Range<usize>, _: &mut PairBuffer<P>) {}
 
     /// The pairs found.
     fn pairs<'a>(&'a self, found: &'a Self::Found) -> impl PairSequence<P> + 'a;

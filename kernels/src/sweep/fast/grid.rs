@@ -90,7 +90,7 @@ impl CellGrid {
 
     /// The sector at an offset of at most one column and one row.
     #[inline(always)]
-    pub(super) fn beside(
+    pub(super) fn adjacent_cell(
         &self,
         [column, row]: [usize; 2],
         [columns, rows]: [isize; 2],

@@ -64,7 +64,7 @@ impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     /// # Safety
     /// `disc` is one of the discs.
     #[inline(always)]
-    pub(super) unsafe fn at(&self, disc: u32) -> [f64; 2] {
+    pub(super) unsafe fn disc_position(&self, disc: u32) -> [f64; 2] {
         // SAFETY: every disc has a position, as `new` has checked.
         self.places.map(|place| unsafe { place.get_unchecked(disc as usize) }.to_f64())
     }
@@ -74,10 +74,10 @@ impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     /// # Safety
     /// `second` is one of the discs, and `cell_offset` below 5.
     #[inline(always)]
-    pub(super) unsafe fn meet(&mut self, first: u32, at: [f64; 2], second: u32, cell_offset: usize) {
+    pub(super) unsafe fn list_if_near(&mut self, first: u32, at: [f64; 2], second: u32, cell_offset: usize) {
         // SAFETY: the caller promises that `second` is a disc and that `cell_offset` is below 5, the length of `cell_offsets`.
         let (there, cell_offset) =
-            unsafe { (self.at(second), *self.cell_offsets.get_unchecked(cell_offset)) };
+            unsafe { (self.disc_position(second), *self.cell_offsets.get_unchecked(cell_offset)) };
         let (dx, dy) = ((at[0] - there[0]) - cell_offset[0], (at[1] - there[1]) - cell_offset[1]);
         let length = self.touches.len();
         if length == self.touches.capacity() {

@@ -31,7 +31,7 @@ use super::pairs::{PairBuffer, PairSequence};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
-use crate::threads::{PIECE, in_pieces, is_alone, on_threads, over_pieces, reordered, shared};
+use crate::threads::{PIECE, in_pieces, is_single_threaded, on_threads, over_pieces, reordered, shared};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -68,7 +68,7 @@ impl Sectors {
 
     /// Empty copy of the sectors for `discs` discs.
     #[inline]
-    pub fn emptied(&self, discs: usize) -> Self {
+    pub fn empty_copy(&self, discs: usize) -> Self {
         Sectors::new(self.grid, discs, self.reach)
     }
 
@@ -121,7 +121,7 @@ impl Sectors {
     pub fn arrange(&mut self, number: impl Fn(usize) -> usize + Sync) {
         let Sectors { sector, starts, members, .. } = self;
         // Atomic additions are slow: a single thread avoids them.
-        let alone = is_alone(sector.len());
+        let alone = is_single_threaded(sector.len());
         let add = |count: &AtomicU32, more: u32| match alone {
             true => {
                 let before = count.load(Ordering::Relaxed);
@@ -155,7 +155,7 @@ impl Sectors {
             });
         });
         let (starts, mut rest) = (&*starts, members.as_mut_slice());
-        let parts = cut(starts).map(|sectors| {
+        let parts = balanced_pieces(starts).map(|sectors| {
             let length = (starts[sectors.end] - starts[sectors.start]) as usize;
             let (here, behind) = std::mem::take(&mut rest).split_at_mut(length);
             rest = behind;
@@ -263,7 +263,7 @@ impl Sectors {
             }
             return;
         }
-        let ahead = AHEAD.map(|ahead| match self.grid.beside([column, row], ahead) {
+        let ahead = AHEAD.map(|ahead| match self.grid.adjacent_cell([column, row], ahead) {
             Some([column, row]) => self.members(row * all + column, 0),
             None => 0..0,
         });
@@ -278,7 +278,7 @@ impl Sectors {
 }
 
 /// Cuts sectors into pieces of [`PIECE`] sectors, or of about [`MEMBERS`] members if that is fewer, from the starts.
-fn cut(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
+fn balanced_pieces(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
     let mut begin = 0;
     std::iter::from_fn(move || {
         let sectors = starts.len() - 1;
@@ -325,9 +325,9 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
                     // SAFETY: `pairs_of_row` gives members of sectors, which are discs, and numbers of cell offsets below 5.
                     unsafe {
                         if first != last {
-                            (last, at) = (first, near.at(first));
+                            (last, at) = (first, near.disc_position(first));
                         }
-                        near.meet(first, at, second, cell_offset);
+                        near.list_if_near(first, at, second, cell_offset);
                     }
                 });
             },
@@ -336,13 +336,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     }
 
     #[inline]
-    fn tried(&self) -> f64 {
+    fn pairs_tried(&self) -> f64 {
         // The rest of the disc's own sector, and four others.
         4.5 * self.members.len() as f64 / (self.starts.len() - 1) as f64
     }
 
     #[inline]
-    fn searched(&self, rows: Range<usize>) -> Range<usize> {
+    fn search_items(&self, rows: Range<usize>) -> Range<usize> {
         self.members_of_rows(rows)
     }
 
@@ -353,9 +353,9 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
             // SAFETY: `pairs_of_members` gives members of sectors, which are discs, and numbers of cell offsets below 5.
             unsafe {
                 if first != last {
-                    (last, at) = (first, near.at(first));
+                    (last, at) = (first, near.disc_position(first));
                 }
-                near.meet(first, at, second, cell_offset);
+                near.list_if_near(first, at, second, cell_offset);
             }
         });
     }

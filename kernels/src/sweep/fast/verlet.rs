@@ -124,7 +124,7 @@ impl VerletList {
 
     /// Number of pairs listed in some rows.
     #[inline]
-    pub fn entries_of(&self, rows: Range<usize>) -> usize {
+    pub fn entries_in_rows(&self, rows: Range<usize>) -> usize {
         (self.rows[rows.end] - self.rows[rows.start]) as usize
     }
 }
@@ -164,7 +164,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
                 for &[disc, partner] in &self.pairs[first..(first + SOME).min(end)] {
                     let (second, cell_offset) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
                     // SAFETY: both are members of sectors and so discs, and `pairs_of_row` numbered the cell offset, below 5.
-                    unsafe { near.meet(disc, near.at(disc), second, cell_offset) };
+                    unsafe { near.list_if_near(disc, near.disc_position(disc), second, cell_offset) };
                 }
             },
         );

@@ -20,7 +20,7 @@ pub(crate) const fn lattice_vector(field: ParticleField) -> Array {
 
 /// Array of a quantity disc by disc, and its value in an empty cell.
 #[inline]
-const fn of_discs(field: ParticleField) -> (Array, f64) {
+const fn disc_array(field: ParticleField) -> (Array, f64) {
     match field {
         ParticleField::Velocity(axis) => ([Array::DiscVx, Array::DiscVy][axis as usize], 0.0),
         ParticleField::Omega => (Array::DiscOmega, 0.0),
@@ -80,7 +80,7 @@ unsafe impl<P: Element> Kernel for SpreadToLattice<P> {
             m.store(Slot::<P>::new(to), r);
         }
         for &field in self.fields {
-            let (from, empty) = of_discs(field);
+            let (from, empty) = disc_array(field);
             let to = Slot::<P>::new(lattice_vector(field));
             m.store(to, m.gather(Slot::<P>::new(from), index, m.uniform(empty)));
         }

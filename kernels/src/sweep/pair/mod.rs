@@ -55,17 +55,17 @@ impl Pair {
     /// Force along x, force along y and torque on each of the two discs.
     #[inline]
     pub fn sums<L: Law<2>>(&self, law: &L) -> [[f64; 3]; 2] {
-        self.meet(law).sums.get()
+        self.evaluate_law(law).sums.get()
     }
 
     /// Stored energy of the pair and its virial (r_i − r_j)·F_i.
     #[inline]
     pub fn energy_and_virial<L: Law<2>>(&self, law: &L) -> [f64; 2] {
-        self.meet(law).energy.get()
+        self.evaluate_law(law).energy.get()
     }
 
     #[inline]
-    fn meet<L: Law<2>>(&self, law: &L) -> PairEnv<'_> {
+    fn evaluate_law<L: Law<2>>(&self, law: &L) -> PairEnv<'_> {
         let meeting = PairEnv { bodies: &self.bodies, sums: Cell::default(), energy: Cell::default() };
         let env = StatedEnv::new(&meeting, law);
         let own = law.own(env);

@@ -40,11 +40,11 @@ impl Pair {
     /// Runge–Kutta method and a disc's inertia ½ M R².
     #[inline]
     pub fn trajectory<L: Law<2>>(self, law: &L, dt: f64) -> impl Iterator<Item = Pair> {
-        std::iter::successors(Some(self), move |pair| Some(pair.stepped(law, dt)))
+        std::iter::successors(Some(self), move |pair| Some(pair.runge_kutta_step(law, dt)))
     }
 
     #[inline]
-    fn stepped<L: Law<2>>(self, law: &L, dt: f64) -> Pair {
+    fn runge_kutta_step<L: Law<2>>(self, law: &L, dt: f64) -> Pair {
         let first = self.rates(law);
         let second = self.moved(&first, 0.5 * dt).rates(law);
         let third = self.moved(&second, 0.5 * dt).rates(law);

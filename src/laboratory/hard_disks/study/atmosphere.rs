@@ -9,8 +9,8 @@ use crate::study::StudyError;
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{ENGINE, RESTITUTION, TIME};
 use stripmine_physics::method::hard_disks::options::EngineChoice;
-use stripmine_physics::method::observed::summed_up;
-use stripmine_physics::number::counted;
+use stripmine_physics::method::observed::summary_number;
+use stripmine_physics::number::count_with_noun;
 use stripmine_physics::scene::{COUNT, GRAVITY, Overrides, SIDES};
 
 /// Gases: number of layers that the discs would fill, and restitution.
@@ -38,10 +38,10 @@ struct Profile {
 }
 
 /// Simulates the gases, and counts the entries of ISO99's look-up.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let meter = ProgressMeter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
-    let profiles = meter.each(&GASES, profile)?;
-    let look_ups = meter.each(&SCENES, |&scene| look_up(scene))?;
+    let profiles = meter.run_cases(&GASES, measure_profile)?;
+    let look_ups = meter.run_cases(&SCENES, |&scene| compare_look_up(scene))?;
     let bins = profiles.iter().flat_map(|it| it.densities.iter().enumerate().map(move |bin| (it, bin)));
     let height = |bin: usize| (bin as f64 + 0.5) * BINS.0;
     Ok(FinishedItem::of([
@@ -75,19 +75,19 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
 }
 
 /// Runs a scene with ISO99's engine and with the fast engine; returns the entries of the former's look-up of occupied cells.
-fn look_up(scene: &'static str) -> Result<(&'static str, [RunningScene; 2], f64), StudyError> {
+fn compare_look_up(scene: &'static str) -> Result<(&'static str, [RunningScene; 2], f64), StudyError> {
     let run = |engine: EngineChoice| {
         let mut gas = RunningScene::begin(scene, &Overrides::new().set(&ENGINE, engine))?;
-        gas.until(Until::Time(100.0))?;
+        gas.advance_until(Until::Time(100.0))?;
         Ok::<_, StudyError>(gas)
     };
     let source = run(EngineChoice::Reference)?;
-    let entries = summed_up(&source.simulation.summary(), "blocks")?;
+    let entries = summary_number(&source.simulation.summary(), "blocks")?;
     Ok((scene, [source, run(EngineChoice::Fast)?], entries))
 }
 
 /// Measures a gas with diameter, mass and kT of 1 and kT/(m g) of 20.
-fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
+fn measure_profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
     let height = 20.0;
     let width = DISCS as f64 / layers;
     let place = Overrides::new().set(&SIDES, [width, 120.0]).set(&GRAVITY, [0.0, -1.0 / height]);
@@ -96,12 +96,12 @@ fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
     // A disc falls through the height in a time of about √2 √(kT/m)/g.
     let between = height;
     let mut now = 40.0 * between;
-    gas.until(Until::Time(now))?;
+    gas.advance_until(Until::Time(now))?;
     let mut densities = vec![vec![]; BINS.1];
     let (mut heights, mut temperatures, mut highest) = (vec![], vec![], 0.0_f64);
     for _ in 0..LOOKS {
         now += between;
-        gas.until(Until::Time(now))?;
+        gas.advance_until(Until::Time(now))?;
         let mut counts = vec![0.0; BINS.1];
         let mut height_now = 0.0;
         for disc in gas.simulation.particles().grains() {
@@ -113,18 +113,18 @@ fn profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
             }
         }
         heights.push(height_now);
-        temperatures.push(gas.observed(["kinetic"])?[0] / DISCS as f64);
+        temperatures.push(gas.observed_values(["kinetic"])?[0] / DISCS as f64);
         // The barometric law has N/h discs per unit of height at the floor.
         let now = counts.into_iter().map(|count| count / (DISCS as f64 * BINS.0));
         densities.iter_mut().zip(now).for_each(|(course, now)| course.push(now));
     }
-    let layers = counted(layers, "layer", "layers");
+    let layers = count_with_noun(layers, "layer", "layers");
     let name = if restitution < 1.0 { format!("{layers}, e = {restitution}") } else { layers };
     Ok(Profile {
         name,
-        densities: densities.iter().map(|course| MeanWithBar::of_course(course)).collect(),
-        mean_height: MeanWithBar::of_course(&heights),
-        temperature: MeanWithBar::of_course(&temperatures),
+        densities: densities.iter().map(|course| MeanWithBar::of_time_series(course)).collect(),
+        mean_height: MeanWithBar::of_time_series(&heights),
+        temperature: MeanWithBar::of_time_series(&temperatures),
         highest,
     })
 }

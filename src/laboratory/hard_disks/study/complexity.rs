@@ -1,10 +1,10 @@
 //! Cost of a collision against the number of discs: counted operations and processor time.
 
-use super::rates::{ENGINES, fluid};
+use super::rates::{ENGINES, fluid_overrides};
 use crate::console::CommandFailure;
 use crate::frame::FrameBuilder;
-use crate::laboratory::rates::{MeasuredCase, RateCase, rates};
-use crate::laboratory::running::prepared;
+use crate::laboratory::rates::{MeasuredCase, RateCase, measure_rates};
+use crate::laboratory::running::prepare_preset;
 use crate::provenance::MachineDescription;
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::statistics::{non_negative, slope};
@@ -58,7 +58,7 @@ impl Fit {
 }
 
 /// Measures both engines.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let grid = match size {
         StudySize::Quick => ComplexityGrid {
             discs: &[1000, 10_000],
@@ -88,12 +88,17 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
     }
     // Ten collisions per disc, to forget the initial lattice and the equal ages of all lists.
     let case = |&(engine, packing, discs): &(&str, f64, u64)| {
-        let case = RateCase::events("hard-disks", &fluid(engine, discs, packing), 5 * discs, grid.collisions);
+        let case = RateCase::events(
+            "hard-disks",
+            &fluid_overrides(engine, discs, packing),
+            5 * discs,
+            grid.collisions,
+        );
         case.label("engine", engine).label("ν", packing.to_string()).label("discs", discs)
     };
-    let measured = rates(lab, &scenes.iter().map(case).collect::<Vec<_>>())?;
+    let measured = measure_rates(lab, &scenes.iter().map(case).collect::<Vec<_>>())?;
     let cost = |((engine, packing_fraction, discs), measured): (_, MeasuredCase)| {
-        let scene = prepared("hard-disks", &fluid(engine, discs, packing_fraction))?;
+        let scene = prepare_preset("hard-disks", &fluid_overrides(engine, discs, packing_fraction))?;
         let discs = scene.particles().grain_count() as f64;
         Ok(CollisionCost { engine, packing_fraction, discs, memory: scene.memory.needed as f64, measured })
     };
@@ -123,7 +128,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
     Ok(FinishedItem::of([
         rows.number("by the fit (µs)", 3, |it| 1e6 * fit(it))
             .frame("complexity", "Of a collision: processor time and counted operations"),
-        FrameBuilder::of(caches())
+        FrameBuilder::of(data_caches())
             .text("cache", |(name, _)| name.clone())
             .number("bytes", 0, |(_, bytes)| *bytes)
             .number("discs", 0, |(_, size)| size / bytes)
@@ -140,7 +145,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
 }
 
 /// Names and sizes in bytes of this machine's data caches.
-fn caches() -> Vec<(String, f64)> {
+fn data_caches() -> Vec<(String, f64)> {
     let cache = |text: &String| {
         let (name, size) = text.split_once(' ')?;
         let kibibytes: f64 = size.strip_suffix('K')?.parse().ok()?;

@@ -1,13 +1,13 @@
 //! Cooling of a granular gas: Haff's law while the gas is homogeneous, and inelastic collapse at strong dissipation.
 
-use super::followed;
+use super::advance_or_collapse;
 use crate::console::CommandFailure;
 use crate::frame::FrameBuilder;
 use crate::laboratory::running::RunningScene;
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::study::{StudyError, first_line};
 use stripmine_physics::method::hard_disks::keys::{CONTACT_DURATION, RESTITUTION};
-use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::method::observed::summary_number;
 use stripmine_physics::method::{self, Until};
 use stripmine_physics::scene::{COUNT, Overrides};
 
@@ -45,10 +45,10 @@ impl CoolingGas {
 }
 
 /// Simulates the cooling gases and the gases that may collapse.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let meter = ProgressMeter::new((RESTITUTIONS.len() + COLLAPSING.len()) as f64, lab.progress);
-    let gases = meter.each(&RESTITUTIONS, gas)?;
-    let fates = meter.each(&COLLAPSING, fate)?;
+    let gases = meter.run_cases(&RESTITUTIONS, measure_cooling)?;
+    let fates = meter.run_cases(&COLLAPSING, find_collapse)?;
     let looks = gases.iter().flat_map(|gas| gas.looks.iter().enumerate().skip(1).map(move |it| (gas, it)));
     let off = |temperature: f64, law: f64| 100.0 * (temperature / law - 1.0);
     Ok(FinishedItem::of([
@@ -81,7 +81,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
     .with_seeds([1]))
 }
 
-fn gas(&restitution: &f64) -> Result<CoolingGas, StudyError> {
+fn measure_cooling(&restitution: &f64) -> Result<CoolingGas, StudyError> {
     let scene = Overrides::new().set(&COUNT, DISCS);
     let begin =
         |restitution: f64| RunningScene::begin("cooling-gas", &scene.clone().set(&RESTITUTION, restitution));
@@ -89,20 +89,20 @@ fn gas(&restitution: &f64) -> Result<CoolingGas, StudyError> {
     // The collision rate of an elastic gas, after it has forgotten the initial lattice.
     let mut elastic = begin(1.0)?;
     let count = elastic.simulation.particles().grain_count() as f64;
-    elastic.events((10.0 * count) as u64)?;
-    let [time, collisions, ..] = elastic.observed(names)?;
-    elastic.events((20.0 * count) as u64)?;
-    let after = elastic.observed(names)?;
+    elastic.advance_events((10.0 * count) as u64)?;
+    let [time, collisions, ..] = elastic.observed_values(names)?;
+    elastic.advance_events((20.0 * count) as u64)?;
+    let after = elastic.observed_values(names)?;
     let elastic_rate = 2.0 * (after[1] - collisions) / (count * (after[0] - time)) / after[2].sqrt();
     let mut gas = begin(restitution)?;
     // One collision per disc destroys the lattice.
-    gas.events(count as u64)?;
-    let first = gas.observed(names)?;
+    gas.advance_events(count as u64)?;
+    let first = gas.observed_values(names)?;
     let haff_time = 4.0 / ((1.0 - restitution * restitution) * elastic_rate * first[2].sqrt());
     let mut looks = vec![first];
     for _ in 0..LOOKS {
-        gas.events((0.25 * count) as u64)?;
-        looks.push(gas.observed(names)?);
+        gas.advance_events((0.25 * count) as u64)?;
+        looks.push(gas.observed_values(names)?);
     }
     let relative =
         |look: [f64; 3]| [2.0 * (look[1] - first[1]) / count, look[0] - first[0], look[2] / first[2]];
@@ -117,7 +117,7 @@ fn gas(&restitution: &f64) -> Result<CoolingGas, StudyError> {
 
 /// Collisions per disc: 200, or fewer if the gas collapses. For a collapse also its message, and the share of collisions that the contact
 /// duration makes elastic in a run of the same length.
-fn fate(&restitution: &f64) -> Result<(f64, Option<(String, f64)>), StudyError> {
+fn find_collapse(&restitution: &f64) -> Result<(f64, Option<(String, f64)>), StudyError> {
     let scene = Overrides::new().set(&COUNT, DISCS).set(&RESTITUTION, restitution);
     let begin = |contact_duration: f64| {
         RunningScene::begin("cooling-gas", &scene.clone().set(&CONTACT_DURATION, contact_duration))
@@ -125,14 +125,14 @@ fn fate(&restitution: &f64) -> Result<(f64, Option<(String, f64)>), StudyError> 
     let mut gas = begin(0.0)?;
     let count = gas.simulation.particles().grain_count() as f64;
     let events = (100.0 * count) as u64;
-    let collapse = followed(&mut gas, Until::Events(events))?;
-    let [collisions] = gas.observed(["collisions"])?;
+    let collapse = advance_or_collapse(&mut gas, Until::Events(events))?;
+    let [collisions] = gas.observed_values(["collisions"])?;
     let cured = |failure: method::PhysicsFailure| {
         let mut cured = begin(CURE)?;
-        cured.events(events)?;
+        cured.advance_events(events)?;
         let summary = cured.simulation.summary();
-        let share = summed_up(&summary, "made_elastic")? / summed_up(&summary, "collisions")?;
-        Ok::<_, StudyError>((first_line(&failure.what()), share))
+        let share = summary_number(&summary, "made_elastic")? / summary_number(&summary, "collisions")?;
+        Ok::<_, StudyError>((first_line(&failure.what_and_when()), share))
     };
     Ok((2.0 * collisions / count, collapse.map(cured).transpose()?))
 }

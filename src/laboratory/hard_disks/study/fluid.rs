@@ -55,12 +55,12 @@ pub(super) fn compressibility(discs: f64, [virial, time]: [f64; 2], temperature:
 }
 
 /// Measures every packing fraction with a reference.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let states = ProgressMeter::new(KNOWN.len() as f64, lab.progress)
-        .each_from_last(&KNOWN, |known| measured(known.0))?;
+        .run_cases_from_last(&KNOWN, |known| measure_state(known.0))?;
     let states = KNOWN.iter().zip(states);
     let off = |mean: MeanWithBar, known: f64| {
-        let off = mean.off(known).percent();
+        let off = mean.relative_to(known).percent();
         TableCell::with_error(off.value, Some(off.bar), 2)
     };
     Ok(FinishedItem::of([
@@ -89,25 +89,25 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
 }
 
 /// Compressibility, collision rate, and the relative change of the kinetic energy.
-fn measured(packing_fraction: f64) -> Result<(MeanWithBar, MeanWithBar, f64), StudyError> {
+fn measure_state(packing_fraction: f64) -> Result<(MeanWithBar, MeanWithBar, f64), StudyError> {
     let overrides = Overrides::new().set(&PACKING_FRACTION, packing_fraction).set(&COUNT, DISCS);
     let mut fluid = RunningScene::begin("hard-disks", &overrides)?;
     let discs = fluid.simulation.particles().grain_count() as f64;
     // The initial lattice melts within some tens of collisions per disc.
-    fluid.events((100.0 * discs) as u64)?;
+    fluid.advance_events((100.0 * discs) as u64)?;
     let names = ["time", "virial", "collisions", "temperature", "energy_error"];
-    let mut before = fluid.observed(names)?;
+    let mut before = fluid.observed_values(names)?;
     let (mut pressures, mut rates) = (vec![], vec![]);
     for _ in 0..PARTS {
-        fluid.events(COLLISIONS / PARTS)?;
-        let after = fluid.observed(names)?;
+        fluid.advance_events(COLLISIONS / PARTS)?;
+        let after = fluid.observed_values(names)?;
         let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
         let temperature = after[3];
         pressures.push(compressibility(discs, [virial, time], temperature));
         rates.push(2.0 * collisions / (discs * time * temperature.sqrt()));
         before = after;
     }
-    Ok((MeanWithBar::of_course(&pressures), MeanWithBar::of_course(&rates), before[4]))
+    Ok((MeanWithBar::of_time_series(&pressures), MeanWithBar::of_time_series(&rates), before[4]))
 }
 
 #[cfg(test)]

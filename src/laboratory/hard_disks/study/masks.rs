@@ -1,16 +1,16 @@
 //! ISO99's comparison of masks: cost of a collision by mask and packing fraction, and a fit of ISO99's cost formula.
 
-use super::rates::{ENGINES, fluid};
+use super::rates::{ENGINES, fluid_overrides};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame};
-use crate::laboratory::rates::{ProcessSpread, RateCase, rates};
-use crate::laboratory::running::{RunningScene, prepared};
+use crate::laboratory::rates::{ProcessSpread, RateCase, measure_rates};
+use crate::laboratory::running::{RunningScene, prepare_preset};
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::statistics::non_negative;
 use stripmine_kernels::mask::Mask;
 use stripmine_physics::method::hard_disks::keys::{MASK, MASKS};
 use stripmine_physics::method::hard_disks::reference::choice;
-use stripmine_physics::method::observed::summed_up;
+use stripmine_physics::method::observed::summary_number;
 
 /// Minimum number of discs.
 const DISCS: u64 = 2500;
@@ -41,12 +41,12 @@ struct MaskCost {
 type MaskChoice = (f64, &'static str, String, f64);
 
 /// Measures every mask.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (densities, collisions): (&[f64], _) = match size {
         StudySize::Quick => (&[0.10, 0.50], 3000),
         StudySize::Full | StudySize::All => (&[0.02, 0.10, 0.30, 0.50, 0.70], 10_000),
     };
-    let scene = |nu: f64, mask: &str| fluid(ENGINES[1], DISCS, nu).set(&MASK, mask);
+    let scene = |nu: f64, mask: &str| fluid_overrides(ENGINES[1], DISCS, nu).set(&MASK, mask);
     let masks = MASKS.iter().filter_map(|name| Some((*name, choice::mask(name)?)));
     let masks: Vec<(&str, Mask)> = masks.collect();
     let cases = densities.iter().flat_map(|&nu| {
@@ -55,11 +55,11 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             case.label("ν", nu.to_string()).label("mask", *mask)
         })
     });
-    let measured = rates(lab, &cases.collect::<Vec<_>>())?;
+    let measured = measure_rates(lab, &cases.collect::<Vec<_>>())?;
     let (mut costs, mut choices): (Vec<MaskCost>, Vec<MaskChoice>) = (vec![], vec![]);
     for (&packing_fraction, measured) in densities.iter().zip(measured.chunks_exact(masks.len())) {
-        let system = RunningScene::timed("hard-disks", &scene(packing_fraction, "min"))?;
-        let occupancy = summed_up(&system.simulation.summary(), "occupancy")?;
+        let system = RunningScene::begin_timed("hard-disks", &scene(packing_fraction, "min"))?;
+        let occupancy = summary_number(&system.simulation.summary(), "occupancy")?;
         let discs = system.simulation.particles().grain_count() as f64;
         let here = masks.iter().zip(measured).map(|((mask, offsets), measured)| {
             let places = offsets.offsets().len();
@@ -68,7 +68,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             MaskCost { packing_fraction, mask, places, discs, candidates, fillings, seconds: measured.cost() }
         });
         let here: Vec<MaskCost> = here.collect();
-        let auto = prepared("hard-disks", &scene(packing_fraction, "auto"))?.settings;
+        let auto = prepare_preset("hard-disks", &scene(packing_fraction, "auto"))?.settings;
         let auto = auto["mask"].as_str().unwrap_or_default().to_owned();
         let cheapest = here.iter().min_by(|a, b| a.seconds.median.total_cmp(&b.seconds.median));
         if let (Some(cheapest), Some(chosen)) = (cheapest, here.iter().find(|it| it.mask == auto)) {
@@ -81,8 +81,9 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
 }
 
 fn frames(costs: &[MaskCost], choices: &[MaskChoice], masks: &[(&str, Mask)]) -> [ResultFrame; 5] {
-    let constants = fit(costs);
-    let fitted = |cost: &MaskCost| terms(cost).iter().zip(constants).map(|(term, it)| term * it).sum::<f64>();
+    let constants = fit_constants(costs);
+    let fitted =
+        |cost: &MaskCost| formula_terms(cost).iter().zip(constants).map(|(term, it)| term * it).sum::<f64>();
     let ratio = |cost: &MaskCost| fitted(cost) / cost.seconds.median;
     let off = |cost: &MaskCost| ratio(cost).max(ratio(cost).recip());
     let squares: f64 = costs.iter().map(|cost| (ratio(cost) - 1.0).powi(2)).sum();
@@ -121,14 +122,14 @@ fn frames(costs: &[MaskCost], choices: &[MaskChoice], masks: &[(&str, Mask)]) ->
 }
 
 /// Factors of the fitted constants.
-fn terms(cost: &MaskCost) -> [f64; 4] {
+fn formula_terms(cost: &MaskCost) -> [f64; 4] {
     let filled = cost.discs * cost.fillings;
     [1.0, cost.candidates, filled, cost.candidates * filled]
 }
 
 /// Non-negative constants from least squares of the relative errors.
-fn fit(costs: &[MaskCost]) -> [f64; 4] {
-    let row = |cost: &MaskCost| (terms(cost).map(|term| NANO * term / cost.seconds.median), 1.0);
+fn fit_constants(costs: &[MaskCost]) -> [f64; 4] {
+    let row = |cost: &MaskCost| (formula_terms(cost).map(|term| NANO * term / cost.seconds.median), 1.0);
     non_negative(&costs.iter().map(row).collect::<Vec<_>>()).map(|constant| NANO * constant)
 }
 
@@ -145,10 +146,11 @@ mod tests {
             let seconds = ProcessSpread { median: 0.0, range: [0.0; 2] };
             let (packing_fraction, mask, places, discs) = (0.5, "", 0, 100.0);
             let mut cost = MaskCost { packing_fraction, mask, places, discs, candidates, fillings, seconds };
-            cost.seconds.median = terms(&cost).iter().zip(constants).map(|(term, it)| term * it).sum();
+            cost.seconds.median =
+                formula_terms(&cost).iter().zip(constants).map(|(term, it)| term * it).sum();
             cost
         });
-        for (found, constant) in fit(&costs).into_iter().zip(constants) {
+        for (found, constant) in fit_constants(&costs).into_iter().zip(constants) {
             assert!((found / constant - 1.0).abs() < 1e-2, "{found} {constant}");
         }
     }

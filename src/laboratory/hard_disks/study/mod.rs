@@ -16,8 +16,8 @@ use stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE;
 use stripmine_physics::method::{PhysicsFailure, Until};
 
 /// Advances a gas to a moment or to its inelastic collapse; returns the collapse.
-fn followed(gas: &mut RunningScene, end: Until) -> Result<Option<PhysicsFailure>, PhysicsFailure> {
-    match gas.until(end) {
+fn advance_or_collapse(gas: &mut RunningScene, end: Until) -> Result<Option<PhysicsFailure>, PhysicsFailure> {
+    match gas.advance_until(end) {
         Ok(()) => Ok(None),
         Err(failure) if failure.kind == INELASTIC_COLLAPSE => Ok(Some(failure)),
         Err(failure) => Err(failure),

@@ -1,10 +1,10 @@
 //! Speed against accuracy: error of Z against processor time.
 
 use super::fluid::{Z_AT_HALF, compressibility};
-use super::rates::{ENGINES, fluid};
+use super::rates::{ENGINES, fluid_overrides};
 use crate::console::CommandFailure;
 use crate::frame::FrameBuilder;
-use crate::laboratory::rates::{RateCase, rates};
+use crate::laboratory::rates::{RateCase, measure_rates};
 use crate::laboratory::running::RunningScene;
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::statistics::RunSpread;
@@ -32,12 +32,12 @@ struct EngineErrors {
 }
 
 /// Runs both engines with every number of discs and every seed, and measures their rates.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let runs = DISCS.iter().flat_map(|&discs| ENGINES.map(|engine| (discs, engine)));
     let runs: Vec<(u64, &str, u64)> =
         runs.flat_map(|(discs, engine)| (1..=SEEDS).map(move |seed| (discs, engine, seed))).collect();
     let half = |share: f64| (lab.progress)(0.5 * share);
-    let errors = ProgressMeter::new(runs.len() as f64, &half).each_from_last(&runs, errors)?;
+    let errors = ProgressMeter::new(runs.len() as f64, &half).run_cases_from_last(&runs, pressure_errors)?;
     let of_ways = runs.chunks(SEEDS as usize).zip(errors.chunks(SEEDS as usize));
     let ways: Vec<EngineErrors> = of_ways
         .map(|(runs, errors)| EngineErrors {
@@ -48,13 +48,13 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
         })
         .collect();
     let case = |way: &EngineErrors| {
-        let scene = fluid(way.engine, way.asked, PACKING);
+        let scene = fluid_overrides(way.engine, way.asked, PACKING);
         let case = RateCase::events("hard-disks", &scene, FORGOTTEN * way.asked, LOOKS[4]);
         case.label("engine", way.engine).label("discs", way.asked)
     };
     let half = |share: f64| (lab.progress)(0.5 + 0.5 * share);
     let lab = StudyEnvironment { progress: &half, program: lab.program.clone() };
-    let rates = rates(&lab, &ways.iter().map(case).collect::<Vec<_>>())?;
+    let rates = measure_rates(&lab, &ways.iter().map(case).collect::<Vec<_>>())?;
     let looks = ways.iter().zip(&rates).flat_map(|it| (0..LOOKS.len()).map(move |look| (it, look)));
     let of_seeds =
         |way: &EngineErrors, look: usize| way.errors.iter().map(|it| 100.0 * it[look]).collect::<Vec<f64>>();
@@ -73,17 +73,18 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
 }
 
 /// Number of discs, and relative errors of the compressibility of a run.
-fn errors(&(discs, engine, seed): &(u64, &str, u64)) -> Result<(usize, Vec<f64>), StudyError> {
-    let mut system = RunningScene::begin("hard-disks", &fluid(engine, discs, PACKING).set(&SEED, seed))?;
+fn pressure_errors(&(discs, engine, seed): &(u64, &str, u64)) -> Result<(usize, Vec<f64>), StudyError> {
+    let mut system =
+        RunningScene::begin("hard-disks", &fluid_overrides(engine, discs, PACKING).set(&SEED, seed))?;
     let discs = system.simulation.particles().grain_count();
-    system.events(FORGOTTEN * discs as u64)?;
+    system.advance_events(FORGOTTEN * discs as u64)?;
     let names = ["time", "virial", "temperature"];
-    let [begun, virial, _] = system.observed(names)?;
+    let [begun, virial, _] = system.observed_values(names)?;
     let (mut all, mut done) = (vec![], 0);
     for collisions in LOOKS {
-        system.events(collisions - done)?;
+        system.advance_events(collisions - done)?;
         done = collisions;
-        let [time, sum, temperature] = system.observed(names)?;
+        let [time, sum, temperature] = system.observed_values(names)?;
         let z = compressibility(discs as f64, [sum - virial, time - begun], temperature);
         all.push(z / Z_AT_HALF - 1.0);
     }

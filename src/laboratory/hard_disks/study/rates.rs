@@ -2,8 +2,8 @@
 
 use crate::console::CommandFailure;
 use crate::frame::FrameBuilder;
-use crate::laboratory::rates::{RateCase, rates};
-use crate::laboratory::running::prepared;
+use crate::laboratory::rates::{RateCase, measure_rates};
+use crate::laboratory::running::prepare_preset;
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use stripmine_physics::method::hard_disks::keys::ENGINE;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
@@ -16,13 +16,13 @@ const PACKING_FRACTIONS: [f64; 5] = [0.10, 0.30, 0.50, 0.65, 0.70];
 const SOURCE: [(f64, f64); 2] = [(2500.0, 460.0), (2_500_000.0, 210.0)];
 
 /// Overrides of the fluid of an engine.
-pub(super) fn fluid(engine: &str, discs: u64, packing_fraction: f64) -> Overrides {
+pub(super) fn fluid_overrides(engine: &str, discs: u64, packing_fraction: f64) -> Overrides {
     let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, packing_fraction);
     scene.set(&ENGINE, engine)
 }
 
 /// Measures both engines.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (sizes, collisions): (&[u64], _) = match size {
         StudySize::Quick => (&[2500], 50_000),
         StudySize::Full | StudySize::All => (&[2500, 250_000], 100_000),
@@ -33,14 +33,15 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
     let cases = scenes.iter().flat_map(|&(discs, packing)| {
         let warm_up = (10 * discs).min(2 * collisions);
         ENGINES.map(|engine| {
-            let case = RateCase::events("hard-disks", &fluid(engine, discs, packing), warm_up, collisions);
+            let case =
+                RateCase::events("hard-disks", &fluid_overrides(engine, discs, packing), warm_up, collisions);
             case.label("discs", discs).label("ν", packing.to_string()).label("engine", engine)
         })
     });
-    let measured = rates(lab, &cases.collect::<Vec<_>>())?;
+    let measured = measure_rates(lab, &cases.collect::<Vec<_>>())?;
     // Discs, bytes of a run, mask.
     let facts = |engine: &str, &(discs, packing): &(u64, f64)| {
-        let scene = prepared("hard-disks", &fluid(engine, discs, packing))?;
+        let scene = prepare_preset("hard-disks", &fluid_overrides(engine, discs, packing))?;
         let mask = scene.settings["mask"].as_str().unwrap_or_default().to_owned();
         Ok::<_, CommandFailure>((scene.particles().grain_count() as f64, scene.memory.needed as f64, mask))
     };
@@ -54,7 +55,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
         .cell("fast (million/s)", |((_, [fast, _]), _)| fast.rate().cell(1e-6, 3))
         .cell("the source's way (million/s)", |((_, [_, reference]), _)| reference.rate().cell(1e-6, 3))
         .text("its mask", |(_, [_, reference])| reference.2.clone())
-        .cell("fast over it", |((_, [fast, reference]), _)| fast.over(reference).cell(1.0, 1))
+        .cell("fast over it", |((_, [fast, reference]), _)| fast.rate_ratio(reference).cell(1.0, 1))
         .number("fast over the source's machine", 0, |((_, [fast, _]), [scene, _])| {
             source(scene.0).map(|(_, rate)| 3600e-6 * fast.rate().median / rate)
         })

@@ -65,7 +65,7 @@ struct DiscModel {
 }
 
 /// Makes the item of the report.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let question = match size {
         StudySize::Quick => SoftHardComparison {
             discs: 200,
@@ -76,11 +76,11 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
         },
         StudySize::Full | StudySize::All => SoftHardComparison::REPORT,
     };
-    soft_hard(&question, lab.progress)
+    compare_soft_hard(&question, lab.progress)
 }
 
 /// Runs the soft models from the softest to the stiffest, then the hard model, with every seed.
-pub(crate) fn soft_hard(
+pub(crate) fn compare_soft_hard(
     question: &SoftHardComparison,
     progress: Progress<'_>,
 ) -> Result<FinishedItem, CommandFailure> {
@@ -94,7 +94,7 @@ pub(crate) fn soft_hard(
     let (mut models, mut discs) = (vec![], 0);
     for stiffness in kinds {
         let kind = DiscKind(stiffness.map(|it| SoftDiscs::new(it, question.restitution, impact_speed)));
-        let runs = meter.each(&seeds, |&seed| kind.run(question, seed, cooling_time))?;
+        let runs = meter.run_cases(&seeds, |&seed| kind.run(question, seed, cooling_time))?;
         discs = runs[0].discs;
         let over = |of: fn(&SeedResult) -> f64| MeanWithBar::of(&runs.iter().map(of).collect::<Vec<_>>());
         let depth = stiffness.map_or(0.0, |stiffness| (2.5 / stiffness).powf(0.4));
@@ -111,7 +111,7 @@ pub(crate) fn soft_hard(
     let hard = &models[models.len() - 1];
     let off = |model: &DiscModel| {
         let MeanWithBar { value, bar } = hard.compressibility;
-        let off = model.compressibility.off(value);
+        let off = model.compressibility.relative_to(value);
         let off = MeanWithBar { bar: off.bar.hypot(bar / value), ..off }.percent();
         TableCell::with_error(off.value, Some(off.bar), 2)
     };
@@ -227,18 +227,18 @@ impl DiscKind {
         let (discs, area) = (fluid.simulation.particles().grain_count(), fluid.domain.area());
         // The initial lattice melts.
         let melted = 0.5 * question.time;
-        fluid.until(self.at(melted))?;
+        fluid.advance_until(self.at(melted))?;
         let begun = cpu_time::ThreadTime::now();
         let mut pressure = 0.0;
         let virial = |fluid: &RunningScene| match self.0 {
-            None => fluid.observed(["virial"]).map(|[virial]| virial),
+            None => fluid.observed_values(["virial"]).map(|[virial]| virial),
             Some(_) => Ok(0.0),
         };
         let (before, time) = (virial(&fluid)?, fluid.simulation.clock().time);
         for look in 1..=LOOKS {
-            fluid.until(self.at(melted + question.time * look as f64 / LOOKS as f64))?;
+            fluid.advance_until(self.at(melted + question.time * look as f64 / LOOKS as f64))?;
             if self.0.is_some() {
-                let [seen, temperature] = fluid.observed(["pressure", "temperature"])?;
+                let [seen, temperature] = fluid.observed_values(["pressure", "temperature"])?;
                 // The pressure contains the kinetic energy of N − 1 discs, because momentum is conserved; that of hard discs contains all.
                 pressure += (seen * area + temperature) / (discs as f64 * temperature);
             }
@@ -248,14 +248,14 @@ impl DiscKind {
         let compressibility = match self.0 {
             Some(_) => pressure / LOOKS as f64,
             None => {
-                let [temperature] = fluid.observed(["temperature"])?;
+                let [temperature] = fluid.observed_values(["temperature"])?;
                 compressibility(discs as f64, [virial(&fluid)? - before, flown], temperature)
             }
         };
         let mut gas = self.begin(question, seed, false)?;
-        let [start] = gas.observed(["temperature"])?;
-        gas.until(self.at(cooling_time))?;
-        let [end] = gas.observed(["temperature"])?;
+        let [start] = gas.observed_values(["temperature"])?;
+        gas.advance_until(self.at(cooling_time))?;
+        let [end] = gas.observed_values(["temperature"])?;
         Ok(SeedResult { discs, compressibility, cooled: end / start, cost })
     }
 }

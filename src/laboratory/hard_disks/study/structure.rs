@@ -53,10 +53,10 @@ struct Structure {
 }
 
 /// Simulates every packing fraction, starting from a crystal with equal speeds.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let all = ProgressMeter::new(PACKING_FRACTIONS.len() as f64, lab.progress)
-        .each(&PACKING_FRACTIONS, structure)?;
-    let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute(middle(TIMES, bin))).collect();
+        .run_cases(&PACKING_FRACTIONS, structure)?;
+    let dilute: Vec<f64> = (0..TIMES.1).map(|bin| dilute_gas_density(bin_middle(TIMES, bin))).collect();
     let bins = |count: usize| all.iter().flat_map(move |it| (0..count).map(move |bin| (it, bin)));
     let off = all[0].free_times.iter().zip(&dilute).map(|(seen, theory)| (seen - theory).abs());
     let off = off.fold(0.0, f64::max);
@@ -64,12 +64,12 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
         table(&all),
         FrameBuilder::of(bins(DISTANCES.1))
             .number("ν", 2, |(it, _)| it.packing_fraction)
-            .number("distance over the diameter", 2, |(_, bin)| 1.0 + middle(DISTANCES, *bin))
+            .number("distance over the diameter", 2, |(_, bin)| 1.0 + bin_middle(DISTANCES, *bin))
             .number("pair correlation g", 3, |(it, bin)| it.correlation[*bin])
             .frame("correlation", "Pair correlation"),
         FrameBuilder::of(bins(TIMES.1))
             .number("ν", 2, |(it, _)| it.packing_fraction)
-            .number("free time over its mean", 2, |(_, bin)| middle(TIMES, *bin))
+            .number("free time over its mean", 2, |(_, bin)| bin_middle(TIMES, *bin))
             .number("density", 3, |(it, bin)| it.free_times[*bin])
             .number("density of a dilute gas", 3, |(_, bin)| dilute[*bin])
             .frame("times", "Probability density of free times"),
@@ -99,7 +99,7 @@ fn table(all: &[Structure]) -> ResultFrame {
         .frame("structure", "Order, free times and velocities (diameter = m = kT = 1)")
 }
 
-fn middle((width, _): (f64, usize), bin: usize) -> f64 {
+fn bin_middle((width, _): (f64, usize), bin: usize) -> f64 {
     (bin as f64 + 0.5) * width
 }
 
@@ -131,25 +131,26 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     }
     let mut running = RunningScene::of(method, &scene.model.started_from(start), StartPurpose::Run)?;
     let count = running.simulation.particles().grain_count();
-    let maxwell =
-        |running: &RunningScene| Ok::<_, StudyError>(running.maxwell(running.observed(["temperature"])?[0]));
+    let maxwell = |running: &RunningScene| {
+        Ok::<_, StudyError>(running.maxwell_probability(running.observed_values(["temperature"])?[0]))
+    };
     let begin = maxwell(&running)?;
     for _ in 0..SETTLING {
-        running.events(count as u64 / 2)?;
+        running.advance_events(count as u64 / 2)?;
         // Free times during settling are not recorded.
         running.simulation.take_events();
     }
     let names = ["time", "virial", "collisions", "temperature"];
-    let before = running.observed(names)?;
+    let before = running.observed_values(names)?;
     let (mut order, mut pairs, mut drawn) = ([vec![], vec![]], vec![0.0; DISTANCES.1], vec![]);
     let between = before[0] * LOOKS.1 as f64 / SETTLING as f64;
     for look in 0..LOOKS.0 {
         // Sampled at a given time: right after an event two discs would always touch.
-        running.until(Until::Time(before[0] + (look + 1) as f64 * between))?;
+        running.advance_until(Until::Time(before[0] + (look + 1) as f64 * between))?;
         running.simulation.take_events();
         let places: Vec<[f64; 2]> =
-            running.simulation.particles().grains().iter().map(|disc| disc.place()).collect();
-        let bonds = bonds(domain, &places);
+            running.simulation.particles().grains().iter().map(|disc| disc.planar_position()).collect();
+        let bonds = bond_orders(domain, &places);
         let sum = bonds.iter().fold([0.0; 2], |sum, bond| [sum[0] + bond[0], sum[1] + bond[1]]);
         let whole = sum[0].hypot(sum[1]);
         order[0].push(whole / count as f64);
@@ -158,11 +159,11 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
         let along = bonds.into_iter().map(|bond| (bond[0] * sum[0] + bond[1] * sum[1]) / whole);
         drawn = places.into_iter().zip(along).collect();
     }
-    let after = running.observed(names)?;
+    let after = running.observed_values(names)?;
     let [time, virial, collisions] = [0, 1, 2].map(|which| after[which] - before[which]);
     let compressibility = compressibility(count as f64, [virial, time], after[3]);
     let free_time = count as f64 * time / (2.0 * collisions);
-    running.events(LOGGED)?;
+    running.advance_events(LOGGED)?;
     let looks = LOOKS.0 as f64;
     let ring = |bin: usize| {
         let [inner, outer] = [bin, bin + 1].map(|edge| 1.0 + edge as f64 * DISTANCES.0);
@@ -172,7 +173,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
     Ok(Structure {
         packing_fraction,
         discs: count,
-        order: order.map(|course| MeanWithBar::of_course(&course)),
+        order: order.map(|course| MeanWithBar::of_time_series(&course)),
         correlation: (0..DISTANCES.1).map(|bin| pairs[bin] / ideal(bin)).collect(),
         contact: (compressibility - 1.0) / (2.0 * packing_fraction),
         free_times: free_times(&running.simulation.take_events(), free_time),
@@ -184,13 +185,13 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
 }
 
 /// ψ₆ of every disc, from its six nearest neighbours.
-fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn bond_orders(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
     // Six neighbours are within reach even in a gas.
     let reach = 3.0 * (domain.area() / places.len() as f64).sqrt();
-    let near = NeighbourSearch::among(domain, places.iter().copied(), reach);
+    let near = NeighbourSearch::over_positions(domain, places.iter().copied(), reach);
     let of = |own: &[f64; 2]| {
         let mut around: Vec<[f64; 2]> = near
-            .of(*own)
+            .candidates_near(*own)
             .map(|(_, other)| domain.displacement(*own, other))
             .filter(|way| *way != [0.0; 2])
             .collect();
@@ -209,9 +210,9 @@ fn bonds(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
 /// Counts every pair within reach in the bin of its distance.
 fn count_pairs(domain: Domain, places: &[[f64; 2]], bins: &mut [f64]) {
     let reach = 1.0 + DISTANCES.0 * DISTANCES.1 as f64;
-    let near = NeighbourSearch::among(domain, places.iter().copied(), reach);
+    let near = NeighbourSearch::over_positions(domain, places.iter().copied(), reach);
     for (own, number) in places.iter().zip(0..) {
-        for (_, other) in near.of(*own).filter(|(other, _)| *other > number) {
+        for (_, other) in near.candidates_near(*own).filter(|(other, _)| *other > number) {
             let bin = ((domain.distance(*own, other) - 1.0) / DISTANCES.0).max(0.0) as usize;
             if let Some(count) = bins.get_mut(bin) {
                 *count += 1.0;
@@ -237,7 +238,7 @@ fn free_times(rows: &str, mean: f64) -> Vec<f64> {
 
 /// Probability density of free times over their mean in a dilute gas. A disc of speed v collides at the rate r(v), so free times have the
 /// density ∫ f r² e^(−r t) dv / ∫ f r dv, with Maxwell's f and r proportional to the mean relative speed.
-fn dilute(time: f64) -> f64 {
+fn dilute_gas_density(time: f64) -> f64 {
     let speeds = || (0..400).map(|step| (f64::from(step) + 0.5) * 0.02);
     let weight = |v: f64| v * (-0.5 * v * v).exp() * 0.02;
     let mean: f64 = speeds().map(|v| weight(v) * relative_speed(v)).sum();
@@ -280,8 +281,8 @@ mod tests {
     #[test]
     fn free_times_of_a_dilute_gas_are_a_density() {
         let times = || (0..2000).map(|at| (f64::from(at) + 0.5) * 0.01);
-        let whole: f64 = times().map(|time| 0.01 * dilute(time)).sum();
-        let mean: f64 = times().map(|time| 0.01 * time * dilute(time)).sum();
+        let whole: f64 = times().map(|time| 0.01 * dilute_gas_density(time)).sum();
+        let mean: f64 = times().map(|time| 0.01 * time * dilute_gas_density(time)).sum();
         assert!((whole - 1.0).abs() < 1e-3 && (mean - 1.0).abs() < 1e-3, "{whole} {mean}");
     }
 
@@ -295,7 +296,7 @@ mod tests {
                 [f64::from(column) + 0.5 * f64::from(row % 2), f64::from(row) * 0.5 * 3f64.sqrt()]
             })
             .collect();
-        for bond in bonds(domain, &places) {
+        for bond in bond_orders(domain, &places) {
             assert!((bond[0] - 1.0).abs() < 1e-9 && bond[1].abs() < 1e-9, "{bond:?}");
         }
         let mut bins = vec![0.0; 20];

@@ -55,15 +55,16 @@ struct FluidAtStep {
 impl FluidAtStep {
     /// Theoretical cooling: dt² kT⟨∇²U⟩/(4 m) with baoab, zero with LAN17's scheme, whose velocities have kT at the end of the step (exactly in
     /// a harmonic trap).
-    fn foreseen(&self) -> MeanWithBar {
+    fn theoretical_cooling(&self) -> MeanWithBar {
         let factor = if self.scheme == SchemeKind::Baoab { 0.25 * self.dt * self.dt } else { 0.0 };
         MeanWithBar { value: factor * self.curvature.value, bar: factor * self.curvature.bar }
     }
 
     /// Difference of measured and theoretical cooling in standard errors; `None` with LAN17's scheme.
-    fn off_theory(&self) -> Option<f64> {
-        let error = self.cooling.bar.hypot(self.foreseen().bar) / student(0.95, PARTS - 1);
-        (self.foreseen().value > 0.0).then(|| (self.cooling.value - self.foreseen().value) / error)
+    fn cooling_deviation(&self) -> Option<f64> {
+        let error = self.cooling.bar.hypot(self.theoretical_cooling().bar) / student(0.95, PARTS - 1);
+        (self.theoretical_cooling().value > 0.0)
+            .then(|| (self.cooling.value - self.theoretical_cooling().value) / error)
     }
 
     /// Error of the energy relative to the limit of short steps, including the half-width of the limit.
@@ -73,13 +74,13 @@ impl FluidAtStep {
 }
 
 /// Measures every step.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let cases: Vec<(SchemeKind, f64)> =
         STEPS.iter().flat_map(|&dt| SCHEMES.map(|scheme| (scheme, dt))).collect();
     let meter = ProgressMeter::new(cases.len() as f64, lab.progress);
-    let fluids = meter.each(&cases, |&(scheme, dt)| fluid(scheme, dt))?;
-    let limit = limit(&fluids);
-    let orders = SCHEMES.map(|scheme| order(&fluids, scheme, limit));
+    let fluids = meter.run_cases(&cases, |&(scheme, dt)| measure_fluid(scheme, dt))?;
+    let limit = short_step_energy(&fluids);
+    let orders = SCHEMES.map(|scheme| error_order(&fluids, scheme, limit));
     let cell = |MeanWithBar { value, bar }: MeanWithBar| TableCell::with_error(value, Some(bar), 4);
     Ok(FinishedItem::of([
         FrameBuilder::of(&fluids)
@@ -89,10 +90,10 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
             .mean("pressure", 4, |it| it.pressure)
             .mean("temperature", 4, |it| it.temperature)
             .number("at the end of the step", 4, |it| it.at_end.value)
-            .number("by theory", 4, |it| 1.0 - it.foreseen().value)
+            .number("by theory", 4, |it| 1.0 - it.theoretical_cooling().value)
             .mean("colder by", 4, |it| it.cooling)
-            .number("by theory", 4, |it| it.foreseen().value)
-            .number("standard errors off", 1, |it| it.off_theory())
+            .number("by theory", 4, |it| it.theoretical_cooling().value)
+            .number("standard errors off", 1, |it| it.cooling_deviation())
             .mean("⟨F²⟩/⟨∇²U⟩", 3, |it| it.configurational)
             .number("⟨∇²U⟩/2", 1, |it| it.curvature.value)
             .number("ms a unit of time", 1, |it| 1e3 * it.cost)
@@ -104,7 +105,9 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
             .cell("error of the energy", |it| cell(it.error(limit)))
             .cell("temperature", |it| cell(it.temperature))
             .cell("at the end of the step", |it| cell(it.at_end))
-            .cell("by theory", |it| cell(MeanWithBar { value: 1.0 - it.foreseen().value, ..it.foreseen() }))
+            .cell("by theory", |it| {
+                cell(MeanWithBar { value: 1.0 - it.theoretical_cooling().value, ..it.theoretical_cooling() })
+            })
             .cell("⟨F²⟩/⟨∇²U⟩", |it| cell(it.configurational))
             .frame("errors", "Error of the energy, and temperatures, of runs that lost no particle"),
         FrameBuilder::of([()])
@@ -117,14 +120,14 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
 }
 
 /// Energy at dt = 0, from a linear fit in dt² to the energies of BAOAB.
-fn limit(fluids: &[FluidAtStep]) -> MeanWithBar {
+fn short_step_energy(fluids: &[FluidAtStep]) -> MeanWithBar {
     let of = fluids.iter().filter(|fluid| fluid.scheme == SchemeKind::Baoab && fluid.is_whole);
     let points: Vec<(f64, MeanWithBar)> = of.map(|fluid| (fluid.dt.powi(2), fluid.potential)).collect();
-    line(&points)[0]
+    weighted_line(&points)[0]
 }
 
 /// Order of a scheme's error in the step. `None` if fewer than three errors exceed their half-widths, or if the order is known too poorly.
-fn order(fluids: &[FluidAtStep], scheme: SchemeKind, limit: MeanWithBar) -> Option<MeanWithBar> {
+fn error_order(fluids: &[FluidAtStep], scheme: SchemeKind, limit: MeanWithBar) -> Option<MeanWithBar> {
     let of = fluids.iter().filter(|it| it.scheme == scheme && it.is_whole);
     let seen = of.map(|it| (it.dt, it.error(limit))).filter(|(_, error)| error.value.abs() > error.bar);
     let logarithm = |MeanWithBar { value, bar }: MeanWithBar| MeanWithBar {
@@ -132,12 +135,12 @@ fn order(fluids: &[FluidAtStep], scheme: SchemeKind, limit: MeanWithBar) -> Opti
         bar: bar / value.abs(),
     };
     let points: Vec<(f64, MeanWithBar)> = seen.map(|(dt, error)| (dt.ln(), logarithm(error))).collect();
-    let [_, slope] = (points.len() >= LEAST).then(|| line(&points))?;
+    let [_, slope] = (points.len() >= LEAST).then(|| weighted_line(&points))?;
     (slope.bar < ORDER_WITHIN).then_some(slope)
 }
 
 /// Intercept and slope of the weighted least-squares line through at least two points with half-widths.
-fn line(points: &[(f64, MeanWithBar)]) -> [MeanWithBar; 2] {
+fn weighted_line(points: &[(f64, MeanWithBar)]) -> [MeanWithBar; 2] {
     let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for &(x, MeanWithBar { value: y, bar }) in points {
         let weight = bar.powi(-2);
@@ -149,12 +152,12 @@ fn line(points: &[(f64, MeanWithBar)]) -> [MeanWithBar; 2] {
     [height, MeanWithBar { value: (w * wxy - wx * wy) / determinant, bar: (w / determinant).sqrt() }]
 }
 
-fn fluid(scheme: SchemeKind, dt: f64) -> Result<FluidAtStep, StudyError> {
+fn measure_fluid(scheme: SchemeKind, dt: f64) -> Result<FluidAtStep, StudyError> {
     let overrides = Overrides::new().set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = RunningScene::begin("langevin-dense", &overrides)?;
     let count = running.simulation.particles().len() as f64;
     // The initial mesh melts within some units of time.
-    let mut done = running.steps((50.0 / dt) as u64);
+    let mut done = running.advance_steps((50.0 / dt) as u64);
     let (samples, between) =
         ((SAMPLES * TIME / PARTS as f64) as usize, (1.0 / (SAMPLES * dt)).round() as u64);
     let mut parts: [Vec<f64>; 7] = Default::default();
@@ -163,20 +166,21 @@ fn fluid(scheme: SchemeKind, dt: f64) -> Result<FluidAtStep, StudyError> {
         let mut sums = [0.0; 5];
         for _ in 0..samples {
             let begun = Instant::now();
-            done = done.and_then(|()| running.steps(between));
+            done = done.and_then(|()| running.advance_steps(between));
             cost += begun.elapsed().as_secs_f64() / (between as f64 * dt * (PARTS * samples) as f64);
             let [potential, pressure, temperature] =
-                running.observed(["potential", "pressure", "temperature"])?;
-            let at_end = kinetic(&running.simulation.particles());
+                running.observed_values(["potential", "pressure", "temperature"])?;
+            let at_end = kinetic_temperature(&running.simulation.particles());
             let seen = [potential / count, pressure, temperature, at_end, temperature - at_end];
             sums.iter_mut().zip(seen).for_each(|(sum, seen)| *sum += seen / samples as f64);
         }
-        let [square, curvature] = forces(&running.simulation.particles(), &running.domain);
+        let [square, curvature] =
+            squared_force_and_curvature(&running.simulation.particles(), &running.domain);
         let means = sums.into_iter().chain([square / curvature, curvature]);
         parts.iter_mut().zip(means).for_each(|(parts, mean)| parts.push(mean));
     }
     let [potential, pressure, temperature, at_end, cooling, configurational, curvature] =
-        parts.map(|parts| MeanWithBar::of_course(&parts));
+        parts.map(|parts| MeanWithBar::of_time_series(&parts));
     let is_whole = done.is_ok();
     Ok(FluidAtStep {
         scheme,
@@ -194,14 +198,14 @@ fn fluid(scheme: SchemeKind, dt: f64) -> Result<FluidAtStep, StudyError> {
 }
 
 /// m⟨v²⟩ per particle and dimension, from the present velocities.
-fn kinetic(particles: &Particles) -> f64 {
+fn kinetic_temperature(particles: &Particles) -> f64 {
     let squares = particles.all().iter().map(Particle::planar_velocity).map(|[u, v]| u * u + v * v);
     squares.sum::<f64>() / (2 * particles.len()) as f64
 }
 
 /// ⟨F²⟩ and ⟨∇²U⟩ per particle and dimension, over all pairs within the cut-off.
-fn forces(particles: &Particles, domain: &Domain) -> [f64; 2] {
-    let places: Vec<[f64; 2]> = particles.all().iter().map(Particle::place).collect();
+fn squared_force_and_curvature(particles: &Particles, domain: &Domain) -> [f64; 2] {
+    let places: Vec<[f64; 2]> = particles.all().iter().map(Particle::planar_position).collect();
     let mut forces = vec![[0.0; 2]; places.len()];
     let mut curvature = 0.0;
     for (first, &from) in places.iter().enumerate() {
@@ -228,7 +232,7 @@ fn forces(particles: &Particles, domain: &Domain) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::laboratory::running::prepared;
+    use crate::laboratory::running::prepare_preset;
     use stripmine_physics::scene::COUNT;
 
     /// Fluids with BAOAB whose energies have the error `factor` dt² and the half-width `bar`. Their velocities at the end of the step are
@@ -254,15 +258,16 @@ mod tests {
     #[test]
     fn order_within_the_noise_is_none() {
         let known = fluids(100.0, 1e-5, 0.0);
-        let MeanWithBar { value, bar } = order(&known, SchemeKind::Baoab, limit(&known)).unwrap();
+        let MeanWithBar { value, bar } =
+            error_order(&known, SchemeKind::Baoab, short_step_energy(&known)).unwrap();
         assert!((value - 2.0).abs() < 0.05 && bar < 0.05, "{value} {bar}");
         let lost = fluids(1.0, 1e-3, 0.0);
-        assert!(order(&lost, SchemeKind::Baoab, limit(&lost)).is_none());
+        assert!(error_order(&lost, SchemeKind::Baoab, short_step_energy(&lost)).is_none());
     }
 
     #[test]
     fn cooling_is_compared_with_theory() {
-        let off = |off: f64| fluids(100.0, 1e-5, off)[3].off_theory().unwrap();
+        let off = |off: f64| fluids(100.0, 1e-5, off)[3].cooling_deviation().unwrap();
         assert!(off(0.0).abs() < 1e-9 && off(0.001) > 3.0, "{} {}", off(0.0), off(0.001));
     }
 
@@ -270,20 +275,20 @@ mod tests {
     #[test]
     fn lines_go_through_their_points() {
         let at = |x: f64, bar: f64| (x, MeanWithBar { value: 3.0 - 2.0 * x, bar });
-        let [height, slope] = line(&[at(0.0, 0.1), at(1.0, 0.1), at(4.0, 0.3)]);
+        let [height, slope] = weighted_line(&[at(0.0, 0.1), at(1.0, 0.1), at(4.0, 0.3)]);
         assert!((height.value - 3.0).abs() < 1e-12 && (slope.value + 2.0).abs() < 1e-12);
-        let [height, slope] = line(&[at(0.0, 0.1), at(1.0, 0.1)]);
+        let [height, slope] = weighted_line(&[at(0.0, 0.1), at(1.0, 0.1)]);
         assert!((height.bar - 0.1).abs() < 1e-12 && (slope.bar - 0.1 * 2f64.sqrt()).abs() < 1e-12);
     }
 
     /// Force and curvature equal finite differences of the energy, also across the sides of the box.
     #[test]
     fn forces_and_curvature_are_energy_differences() {
-        let prepared = prepared("langevin-dense", &Overrides::new().set(&COUNT, 300_u64)).unwrap();
+        let prepared = prepare_preset("langevin-dense", &Overrides::new().set(&COUNT, 300_u64)).unwrap();
         let (start, domain) = (prepared.particles().all().to_vec(), prepared.domain);
         let energy = |all: &[Particle]| -> f64 {
             let pairs = all.iter().enumerate().flat_map(|(at, a)| all[at + 1..].iter().map(move |b| (a, b)));
-            let distances = pairs.map(|(a, b)| domain.distance(a.place(), b.place()));
+            let distances = pairs.map(|(a, b)| domain.distance(a.planar_position(), b.planar_position()));
             distances.filter(|r| *r < REACH).map(|r| 4.0 * (r.powi(-12) - r.powi(-6))).sum()
         };
         let (step, middle) = (1e-4, energy(&start));
@@ -300,7 +305,7 @@ mod tests {
                 expected[1] += (up - 2.0 * middle + down) / (step * step);
             }
         }
-        let found = forces(&Particles::new(start), &domain);
+        let found = squared_force_and_curvature(&Particles::new(start), &domain);
         for (found, sum) in found.into_iter().zip(expected) {
             let expected = sum / 600.0;
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");

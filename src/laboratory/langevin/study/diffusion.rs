@@ -28,7 +28,7 @@ const STEPS: [f64; 6] = [0.01, 0.03, 0.1, 0.3, 0.6, 1.0];
 const WIDTH: f64 = 1.96;
 
 /// Exact ⟨r²⟩ of free particles from a thermal start, with D = kT/γ = 1 and τ = m/γ = 1.
-fn exact(time: f64) -> f64 {
+fn exact_displacement(time: f64) -> f64 {
     4.0 * (time - 1.0 + (-time).exp())
 }
 
@@ -53,19 +53,19 @@ impl SystemSeries {
     }
 
     /// Ratio of ⟨r²⟩ to the exact value without pairs, at the last sample up to `time`.
-    fn over_exact(&self, time: f64) -> f64 {
+    fn ratio_to_exact(&self, time: f64) -> f64 {
         let within = self.times.iter().filter(|it| **it <= time * (1.0 + 1e-9)).count();
-        self.square[within - 1][0] / exact(self.times[within - 1])
+        self.square[within - 1][0] / exact_displacement(self.times[within - 1])
     }
 
     /// Enskog's prediction of this ratio at a time: collisions of discs of diameter σ add the friction 2 n σ χ √(π m kT) to γ, with χ the
     /// pair distribution at contact (Henderson); kT = m = γ = 1.
-    fn by_enskog(&self, time: f64) -> f64 {
+    fn enskog_ratio(&self, time: f64) -> f64 {
         let density = self.particles as f64 / (self.side * self.side);
         let packing = 0.25 * PI * density * DIAMETER * DIAMETER;
         let contact = (1.0 - 7.0 / 16.0 * packing) / (1.0 - packing).powi(2);
         let friction = 1.0 + 2.0 * density * DIAMETER * contact * PI.sqrt();
-        exact(friction * time) / (friction * friction) / exact(time)
+        exact_displacement(friction * time) / (friction * friction) / exact_displacement(time)
     }
 
     fn end(&self) -> f64 {
@@ -91,27 +91,28 @@ struct HeatingPoint {
 }
 
 /// Simulates every system.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let schemes = [SchemeKind::Stochastic, SchemeKind::AsPrinted, SchemeKind::Baoab];
     let cases: Vec<(SchemeKind, f64)> =
         schemes.into_iter().flat_map(|scheme| STEPS.map(|dt| (scheme, dt))).collect();
     let meter = ProgressMeter::new((SYSTEMS.len() + 1 + cases.len()) as f64, lab.progress);
-    let mut systems = meter.each_from_last(&SYSTEMS, |&(particles, side)| followed(particles, side, true))?;
-    systems.push(followed(SYSTEMS[0].0, SYSTEMS[0].1, false)?);
+    let mut systems =
+        meter.run_cases_from_last(&SYSTEMS, |&(particles, side)| simulate_system(particles, side, true))?;
+    systems.push(simulate_system(SYSTEMS[0].0, SYSTEMS[0].1, false)?);
     meter.add(1.0);
-    let heated = meter.each(&cases, |&(scheme, dt)| heated(scheme, dt))?;
+    let heated = meter.run_cases(&cases, |&(scheme, dt)| measure_heating(scheme, dt))?;
     let [thin, dense, free] = [2, 3, 4].map(|at| &systems[at]);
-    let off = thin.times.iter().map(|time| (thin.over_exact(*time) - 1.0).abs() / thin.standard_error());
+    let off = thin.times.iter().map(|time| (thin.ratio_to_exact(*time) - 1.0).abs() / thin.standard_error());
     let heating = heated.iter().filter(|it| it.scheme != SchemeKind::AsPrinted);
     let heating = heating.map(|it| ((it.temperature.value - 1.0) / it.temperature.bar).abs());
     let samples = systems.iter().flat_map(|it| (0..it.times.len()).map(move |at| (it, at)));
     Ok(FinishedItem::of([
         FrameBuilder::of(&systems)
             .text("system", |it| it.name())
-            .number("over exact at 0.1", 3, |it| it.over_exact(0.1))
-            .number("at 1", 3, |it| it.over_exact(1.0))
-            .number("at the end", 3, |it| it.over_exact(f64::INFINITY))
-            .number("by Enskog", 3, |it| it.has_pairs.then(|| it.by_enskog(it.end())))
+            .number("over exact at 0.1", 3, |it| it.ratio_to_exact(0.1))
+            .number("at 1", 3, |it| it.ratio_to_exact(1.0))
+            .number("at the end", 3, |it| it.ratio_to_exact(f64::INFINITY))
+            .number("by Enskog", 3, |it| it.has_pairs.then(|| it.enskog_ratio(it.end())))
             .number("relative standard error", 3, |it| it.standard_error())
             .number("time", 2, |it| it.end())
             .number("⟨r²⟩", 3, |it| it.square[it.times.len() - 1][0])
@@ -124,12 +125,12 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
             .number("time", 3, |(it, at)| it.times[*at])
             .number("mean square displacement", 4, |(it, at)| it.square[*at][0])
             .number("by wrapped positions", 4, |(it, at)| it.square[*at][1])
-            .number("without pairs, exact", 4, |(it, at)| exact(it.times[*at]))
+            .number("without pairs, exact", 4, |(it, at)| exact_displacement(it.times[*at]))
             .cell("over the exact one", |(it, at)| {
-                let ratio = it.square[*at][0] / exact(it.times[*at]);
+                let ratio = it.square[*at][0] / exact_displacement(it.times[*at]);
                 TableCell::with_error(ratio, Some(WIDTH * it.standard_error() * ratio), 3)
             })
-            .number("by Enskog", 3, |(it, at)| it.has_pairs.then(|| it.by_enskog(it.times[*at])))
+            .number("by Enskog", 3, |(it, at)| it.has_pairs.then(|| it.enskog_ratio(it.times[*at])))
             .frame("over-time", "Mean square displacement over the time"),
         FrameBuilder::of(&heated)
             .text("scheme", |it| it.scheme.word())
@@ -155,7 +156,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
     .with_seeds([1]))
 }
 
-fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<SystemSeries, StudyError> {
+fn simulate_system(particles: u64, side: f64, has_pairs: bool) -> Result<SystemSeries, StudyError> {
     let law = if has_pairs { PairLaw::Wca } else { PairLaw::None };
     let overrides =
         Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&LAW, law).set(&DT, STEP);
@@ -168,7 +169,7 @@ fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<SystemSeries, 
             break;
         }
         let wanted = (time / STEP).round() as u64;
-        running.steps(wanted.saturating_sub(running.simulation.clock().steps))?;
+        running.advance_steps(wanted.saturating_sub(running.simulation.clock().steps))?;
         let now = running.simulation.particles();
         let inside = now.all().iter().zip(start.all()).map(|(now, start)| {
             let [x, y] = [0, 1].map(|axis| now.position[axis] - start.position[axis]);
@@ -176,28 +177,36 @@ fn followed(particles: u64, side: f64, has_pairs: bool) -> Result<SystemSeries, 
         });
         let inside = inside.sum::<f64>() / particles as f64;
         times.push(running.simulation.clock().time);
-        square.push([running.observed(["msd"])?[0], inside]);
+        square.push([running.observed_values(["msd"])?[0], inside]);
     }
-    let [temperature] = running.observed(["temperature"])?;
-    Ok(SystemSeries { particles, side, has_pairs, times, square, maxwell: running.maxwell(1.0), temperature })
+    let [temperature] = running.observed_values(["temperature"])?;
+    Ok(SystemSeries {
+        particles,
+        side,
+        has_pairs,
+        times,
+        square,
+        maxwell: running.maxwell_probability(1.0),
+        temperature,
+    })
 }
 
-fn heated(scheme: SchemeKind, dt: f64) -> Result<HeatingPoint, StudyError> {
+fn measure_heating(scheme: SchemeKind, dt: f64) -> Result<HeatingPoint, StudyError> {
     let overrides = Overrides::new().set(&COUNT, 4000_u64).set(&INTEGRATOR, scheme).set(&DT, dt);
     let mut running = RunningScene::begin("langevin-free", &overrides)?;
     // Samples are 5 m/γ apart.
     let between = (5.0 / dt).ceil() as u64;
     let mut temperatures = vec![];
-    running.steps(2 * between)?;
+    running.advance_steps(2 * between)?;
     for _ in 0..PARTS {
-        running.steps(between)?;
-        temperatures.push(running.observed(["temperature"])?[0]);
+        running.advance_steps(between)?;
+        temperatures.push(running.observed_values(["temperature"])?[0]);
     }
     Ok(HeatingPoint {
         scheme,
         dt,
-        temperature: MeanWithBar::of_course(&temperatures),
-        maxwell: running.maxwell(1.0),
+        temperature: MeanWithBar::of_time_series(&temperatures),
+        maxwell: running.maxwell_probability(1.0),
     })
 }
 
@@ -219,7 +228,7 @@ mod tests {
                 maxwell: 0.5,
                 temperature: 1.0,
             };
-            system.by_enskog(20.0)
+            system.enskog_ratio(20.0)
         });
         assert!((dense - 0.411).abs() < 0.005 && thin > 0.999, "{dense}, {thin}");
     }

@@ -2,8 +2,8 @@
 
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, TableCell};
-use crate::laboratory::rates::{CaseReading, MeasuredCase, RateCase, StudyWork, rates};
-use crate::laboratory::running::{RunningScene, prepared};
+use crate::laboratory::rates::{CaseReading, MeasuredCase, RateCase, StudyWork, measure_rates};
+use crate::laboratory::running::{RunningScene, prepare_preset};
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use std::collections::BTreeMap;
@@ -50,7 +50,7 @@ const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
 
 /// Measured work other than runs of scenes.
 pub(in crate::laboratory::langevin) static WORKS: [StudyWork; 1] =
-    [StudyWork { name: "langevin-frames", measure: |_| frames() }];
+    [StudyWork { name: "langevin-frames", measure: |_| write_frames() }];
 
 /// Fluid with its pair law, density N σ²/A, the search chosen by `auto`, and the index of the case of each search that supports it.
 struct SearchedFluid {
@@ -61,7 +61,7 @@ struct SearchedFluid {
 }
 
 /// Measures every number of sectors, neighbour lists, and fluids with every search.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (fewest, seconds) = if size == StudySize::Quick { (100, 0.05) } else { (3, 0.06) };
     let counts = SOURCE.iter().filter(|(count, _)| *count >= fewest);
     let sides: Vec<Option<(u64, [f64; 2])>> = counts.copied().map(Some).chain([None]).collect();
@@ -81,7 +81,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
     let laws = [PairLaw::Wca, PairLaw::LennardJones];
     let fluids = laws.into_iter().flat_map(|law| DENSITIES.map(|density| (law, density)));
     let fluids: Vec<SearchedFluid> = fluids
-        .map(|(law, density)| fluid(law, density, 0.25 * seconds, &mut cases))
+        .map(|(law, density)| make_fluid(law, density, 0.25 * seconds, &mut cases))
         .collect::<Result<_, _>>()?;
     cases.push(
         RateCase::steps("langevin-report", &Overrides::new(), 50, 500)
@@ -89,7 +89,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             .on_threads(1),
     );
     cases.push(RateCase::own(&WORKS[0], serde_json::Value::Null).label("writing", "frames"));
-    let all = rates(lab, &cases)?;
+    let all = measure_rates(lab, &cases)?;
     let [.., phases, written] = all.as_slice() else { return Ok(FinishedItem::default()) };
     let part =
         |(name, _): (&String, &f64)| (name.clone(), phases.part(name).cell(1e3 * STEPS * PARTICLES, 2));
@@ -102,7 +102,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             .text("sectors", |(side, _)| name(side))
             .cell("1 thread (s)", |(_, threads)| seconds(&threads[0]))
             .cell("2 threads (s)", |(_, threads)| seconds(&threads[1]))
-            .cell("one over two", |(_, threads)| threads[1].over(&threads[0]).cell(1.0, 2))
+            .cell("one over two", |(_, threads)| threads[1].rate_ratio(&threads[0]).cell(1.0, 2))
             .number("source", 2, |(side, _)| side.map(|(_, [one, two])| one / two))
             .number("source, 1 (s)", 1, |(side, _)| side.map(|(_, source)| source[0]))
             .number("source, 2 (s)", 1, |(side, _)| side.map(|(_, source)| source[1]))
@@ -114,7 +114,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
                 fluid.searches.map(|case| case.map(of_search))
             })
             .text("auto takes", |fluid| &fluid.auto)
-            .number("slower than the best (%)", 0, |fluid| fluid.loss(&all).map(|it| 100.0 * it))
+            .number("slower than the best (%)", 0, |fluid| fluid.slowdown_of_auto(&all).map(|it| 100.0 * it))
             .frame("searches", "A step of 4000 particles by every search, on one thread"),
         FrameBuilder::of(parts)
             .text("part", |(name, _)| name.clone())
@@ -126,7 +126,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
 
 impl SearchedFluid {
     /// Relative time by which `auto` is slower than the fastest search.
-    fn loss(&self, all: &[MeasuredCase]) -> Option<f64> {
+    fn slowdown_of_auto(&self, all: &[MeasuredCase]) -> Option<f64> {
         let cost = |case: &Option<usize>| case.map(|case| all[case].cost().median);
         let best = self.searches.iter().filter_map(cost).fold(f64::INFINITY, f64::min);
         // With sectors, `auto` sorts when needed.
@@ -141,7 +141,7 @@ impl SearchedFluid {
 }
 
 /// Makes a fluid and adds the searches that support it to the cases.
-fn fluid(
+fn make_fluid(
     law: PairLaw,
     density: f64,
     seconds: f64,
@@ -152,19 +152,19 @@ fn fluid(
     let scene = scene.set(&SIDES, [side; 2]).set(&SPACING, 1.13);
     let searches = SEARCHES.map(|(name, searched)| {
         let overrides = searched(scene.clone());
-        prepared("langevin-dense", &overrides).is_ok().then(|| {
+        prepare_preset("langevin-dense", &overrides).is_ok().then(|| {
             let case = RateCase::steps("langevin-dense", &overrides, 1, 1).for_seconds(seconds).on_threads(1);
             cases.push(case.label("density", TableCell::Number(density, 2)).label("search", name));
             cases.len() - 1
         })
     });
-    let auto = prepared("langevin-dense", &scene)?.settings["search"].as_str().unwrap_or("").to_owned();
+    let auto = prepare_preset("langevin-dense", &scene)?.settings["search"].as_str().unwrap_or("").to_owned();
     Ok(SearchedFluid { law, density, auto, searches })
 }
 
 /// Writes the ten frames of LAN17's run as text.
-fn frames() -> Result<CaseReading, StudyError> {
-    let running = RunningScene::timed("langevin-report", &Overrides::new())?;
+fn write_frames() -> Result<CaseReading, StudyError> {
+    let running = RunningScene::begin_timed("langevin-report", &Overrides::new())?;
     let begun = Instant::now();
     for step in 0..10 {
         let frame = ParticleFrame {
@@ -199,17 +199,17 @@ mod tests {
             None => scene.set(&SEARCH, PairSearchKind::NeighborList),
         };
         let particles = on_threads(threads, || {
-            let mut running = RunningScene::timed("langevin-dense", &scene)?;
-            running.steps(6)?;
+            let mut running = RunningScene::begin_timed("langevin-dense", &scene)?;
+            running.advance_steps(6)?;
             Ok(running.simulation.particles())
         });
         let particles = particles.unwrap();
         let bits = |it: &Particle| {
-            let ([x, y], [u, v]) = (it.place(), it.planar_velocity());
+            let ([x, y], [u, v]) = (it.planar_position(), it.planar_velocity());
             [x, y, u, v].map(f64::to_bits)
         };
         let all = particles.all();
-        (all.iter().map(bits).collect(), all.iter().map(Particle::place).collect())
+        (all.iter().map(bits).collect(), all.iter().map(Particle::planar_position).collect())
     }
 
     /// Few large sectors, whose pairs all threads find together, give identical bits on any number of threads, and agree with lists up to

@@ -14,14 +14,15 @@ const PERIODS: u32 = 10;
 const LOST: f64 = 0.5;
 
 /// Integrates the oscillation with both correctors.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let runs = ["printed", "difference"].into_iter().flat_map(|corrector| {
-        let of =
-            move |values| STEPS.map(|steps| (corrector, values, steps, followed(corrector, values, steps)));
+        let of = move |values| {
+            STEPS.map(|steps| (corrector, values, steps, energy_error_of_corrector(corrector, values, steps)))
+        };
         (4..=6).flat_map(of)
     });
     let order = |values: usize| {
-        let error = |steps| followed("difference", values, steps).unwrap_or(f64::NAN);
+        let error = |steps| energy_error_of_corrector("difference", values, steps).unwrap_or(f64::NAN);
         libm::log2(error(512) / error(1024))
     };
     Ok(FinishedItem::of([
@@ -40,7 +41,7 @@ pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedIte
 }
 
 /// Largest |ΔE/E| during the run, or the step at which the oscillation is lost.
-fn followed(corrector: &str, values: usize, steps: u32) -> Result<f64, u64> {
+fn energy_error_of_corrector(corrector: &str, values: usize, steps: u32) -> Result<f64, u64> {
     let dt = TAU / f64::from(steps);
     let coefficients = coefficients(values, Acceleration::OfPositions);
     // Scaled derivatives dt^k/k! of cos t.

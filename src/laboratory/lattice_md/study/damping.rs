@@ -1,6 +1,6 @@
 //! Density waves against dissipation: the pipe at several γ_N, and a control that must stay homogeneous.
 
-use super::pipe_flow::{Flow, elastic, flow, late};
+use super::pipe_flow::{Flow, elastic_gas, late_mean, run_pipe};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, TableCell};
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
@@ -14,26 +14,26 @@ const SCAN: [f64; 5] = [100.0, 200.0, 400.0, 700.0, 1000.0];
 const SEEDS: [u64; 6] = [1, 2, 3, 4, 5, 6];
 
 /// Runs every case with every seed.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let scan = SCAN.map(|damping| {
         let name = format!("γ_N = {damping:.0} 1/s");
         (name, Some(damping), Overrides::new().set(&NORMAL_DAMPING, damping))
     });
-    let control = ("elastic gas without gravity".to_owned(), None, elastic(&Overrides::new()));
+    let control = ("elastic gas without gravity".to_owned(), None, elastic_gas(&Overrides::new()));
     let cases: Vec<_> = scan.into_iter().chain([control]).collect();
     let runs: Vec<(&Overrides, u64)> =
         cases.iter().flat_map(|(.., overrides)| SEEDS.map(|seed| (overrides, seed))).collect();
     let flows = ProgressMeter::new(runs.len() as f64, lab.progress)
-        .each(&runs, |&(overrides, seed)| flow("pipe-small", overrides, seed, false, |_| {}))?;
+        .run_cases(&runs, |&(overrides, seed)| run_pipe("pipe-small", overrides, seed, false, |_| {}))?;
     // Fano factor at the start and late, strongest mode at the start and late, late mean velocity (m/s).
     let spreads = |flows: &[Flow]| {
         let over = |of: fn(&Flow) -> f64| RunSpread::of(&flows.iter().map(of).collect::<Vec<_>>());
         [
             over(|flow| flow.fano[0]),
-            over(|flow| late(&flow.fano).value),
+            over(|flow| late_mean(&flow.fano).value),
             over(|flow| flow.strongest_mode[0]),
-            over(|flow| late(&flow.strongest_mode).value),
-            over(|flow| late(&flow.flow).value),
+            over(|flow| late_mean(&flow.strongest_mode).value),
+            over(|flow| late_mean(&flow.flow).value),
         ]
     };
     let cases: Vec<_> = cases.iter().zip(flows.chunks(SEEDS.len()).map(spreads)).collect();

@@ -1,13 +1,15 @@
 //! Clock periods of a step against particle number and density, by BP93's clock model: its figures 3 and 4.
 
 use super::StudyError;
-use super::efficiency_table::{TableFeatures, TableScene, counting_model, model_of, printed_clocks, step};
+use super::efficiency_table::{
+    TableFeatures, TableScene, counting_model, printed_clocks, programs_of_step, scene_model,
+};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::model::clock::Clock;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
-use crate::results::{FinishedItem, StudyEnvironment, StudySize, side_by_side};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize, run_in_parallel};
 use crate::statistics::slope;
 use std::f64::consts::PI;
 use stripmine_kernels::isa::OpCounts;
@@ -15,7 +17,7 @@ use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_physics::method::lattice_md::keys::{EXECUTION, SEARCH};
 use stripmine_physics::method::lattice_md::options::SearchKind;
 use stripmine_physics::method::lattice_md::{
-    GranularDocument, Lengths, Part, assemble, ledger, rival_ledger,
+    GranularDocument, Lengths, Part, assemble, ledger, neighbour_list_ledger,
 };
 use stripmine_physics::method::throughput::MeasurementError;
 use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
@@ -68,20 +70,20 @@ struct CostCurve {
 }
 
 /// Computes the curves with the clock of the paper's machine.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     Ok(density_cost(&machines::preset("paper")?)?)
 }
 
 /// Computes the curves with the clock of a machine.
 pub(crate) fn density_cost(machine: &MachineModel) -> Result<FinishedItem, StudyError> {
     let occupancies: Vec<f64> = OCCUPANCIES.into_iter().filter(|&occupancy| occupancy < CEILING).collect();
-    let figures = side_by_side(&occupancies, |&occupancy| list_figures(occupancy))?;
+    let figures = run_in_parallel(&occupancies, |&occupancy| list_statistics(occupancy))?;
     let model = ClockedModel::of(machine)?;
-    let cells = LATTICES.iter().map(|&cells| model.over_particles(Some(cells), None));
-    let densities = OCCUPANCIES.iter().map(|&occupancy| model.over_particles(None, Some(occupancy)));
+    let cells = LATTICES.iter().map(|&cells| model.lattice_curve(Some(cells), None));
+    let densities = OCCUPANCIES.iter().map(|&occupancy| model.lattice_curve(None, Some(occupancy)));
     let (cells, densities): (Vec<_>, Vec<_>) =
         (cells.collect::<Result<_, _>>()?, densities.collect::<Result<_, _>>()?);
-    let lists: Vec<CostCurve> = figures.iter().map(|figures| model.with_lists(figures)).collect();
+    let lists: Vec<CostCurve> = figures.iter().map(|figures| model.list_curve(figures)).collect();
     let dense = &lists[lists.len() - 1];
     let rivals = cells.iter().map(|curve| (curve, dense)).chain(by_density(&densities, &lists));
     Ok(FinishedItem::of([
@@ -148,7 +150,7 @@ pub(super) fn crossing(ratios: &[(f64, f64)]) -> Option<f64> {
 }
 
 /// Power of ρ of a number of particles: slope of a line through logarithms; `None` with fewer than two points.
-pub(super) fn power(points: impl Iterator<Item = (f64, Option<f64>)>) -> Option<f64> {
+pub(super) fn power_of_density(points: impl Iterator<Item = (f64, Option<f64>)>) -> Option<f64> {
     let known = points.filter_map(|(density, particles)| Some((density.ln(), particles?.ln())));
     let (densities, particles): (Vec<f64>, Vec<f64>) = known.unzip();
     (densities.len() > 1).then(|| slope(&densities, &particles))
@@ -156,7 +158,9 @@ pub(super) fn power(points: impl Iterator<Item = (f64, Option<f64>)>) -> Option<
 
 fn break_even_power(lattice: &[CostCurve], lists: &[CostCurve]) -> Option<f64> {
     let density = |curve: &CostCurve| curve.occupancy.unwrap_or(f64::NAN);
-    power(by_density(lattice, lists).map(|(lattice, lists)| (density(lists), break_even(lattice, lists))))
+    power_of_density(
+        by_density(lattice, lists).map(|(lattice, lists)| (density(lists), break_even(lattice, lists))),
+    )
 }
 
 /// Largest ratio of the costs of lists between densities at one number of particles.
@@ -185,7 +189,8 @@ impl ClockedModel<'_> {
     /// Counts the operations, which do not depend on the size of the lattice.
     fn of(machine: &MachineModel) -> Result<ClockedModel<'_>, StudyError> {
         let question = TableScene::default();
-        let (programs, rival) = (step(&question)?.0, rival_ledger(&model_of(&question)?));
+        let (programs, rival) =
+            (programs_of_step(&question)?.0, neighbour_list_ledger(&scene_model(&question)?));
         Ok(ClockedModel { machine, choice: question.choice, lattice: ledger(&programs), rival })
     }
 
@@ -194,7 +199,7 @@ impl ClockedModel<'_> {
     }
 
     /// Curve of the vector algorithm, with LMAX or ρ fixed.
-    fn over_particles(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<CostCurve, StudyError> {
+    fn lattice_curve(&self, cells: Option<usize>, occupancy: Option<f64>) -> Result<CostCurve, StudyError> {
         let full = CEILING.max(occupancy.unwrap_or(0.0));
         let lattices = particles().map(|particles| {
             let of_density = || (particles as f64 / occupancy.unwrap_or(1.0)).ceil() as usize;
@@ -220,7 +225,7 @@ impl ClockedModel<'_> {
     }
 
     /// Curve of scalar neighbour lists: every operation costs the whole depth of the pipeline. The Index belongs to the lattice and is omitted.
-    fn with_lists(&self, figures: &ListStatistics) -> CostCurve {
+    fn list_curve(&self, figures: &ListStatistics) -> CostCurve {
         let rows: Vec<_> =
             self.rival.parts().into_iter().filter(|(part, ..)| *part != Part::Index.name()).collect();
         let costs = particles().map(|particles| {
@@ -245,7 +250,7 @@ impl ClockedModel<'_> {
 }
 
 /// Measures the lists of a warm gas of about a thousand discs.
-pub(super) fn list_figures(occupancy: f64) -> Result<ListStatistics, StudyError> {
+pub(super) fn list_statistics(occupancy: f64) -> Result<ListStatistics, StudyError> {
     const EQUILIBRATION: u64 = 200;
     const STEPS: u64 = 1000;
     let scene = Overrides::new().set(&COUNT, 1024_u64).set(&PACKING_FRACTION, PI * occupancy);

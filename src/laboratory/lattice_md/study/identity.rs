@@ -17,7 +17,7 @@ type ComparedScene = (&'static str, &'static str, Overrides, u64);
 const STRIDE: u64 = 1000;
 
 /// Runs each scene with both methods.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let few = Overrides::new().set(&COUNT, 400_u64);
     let dense = few.clone().set(&PACKING_FRACTION, 0.84).set(&NORMAL_DAMPING, 0.5);
     let scenes = [
@@ -25,7 +25,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
         ("density waves", "pipe-small", Overrides::new(), 4000),
         ("elastic gas", "dense-gas", few, 2000),
     ];
-    let states = ProgressMeter::new(scenes.len() as f64, lab.progress).each(&scenes, compared)?;
+    let states = ProgressMeter::new(scenes.len() as f64, lab.progress).run_cases(&scenes, compare_states)?;
     let rows =
         scenes.iter().zip(&states).flat_map(|(scene, states)| states.iter().map(move |it| (scene.0, it)));
     Ok(FinishedItem::of([FrameBuilder::of(rows)
@@ -45,7 +45,9 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
 }
 
 /// Steps, and the particles with the lattice and with lists.
-fn compared((_, preset, overrides, steps): &ComparedScene) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
+fn compare_states(
+    (_, preset, overrides, steps): &ComparedScene,
+) -> Result<Vec<(u64, [Particles; 2])>, StudyError> {
     let start = |search: SearchKind| {
         let overrides = overrides.clone().set(&SEARCH, search).set(&EXECUTION, "chained");
         Ok::<_, StudyError>(assemble(&GranularDocument::load(preset, &overrides.texts())?.check()?)?)

@@ -1,6 +1,6 @@
 //! Clock periods of one step by every clock model, from the trivial one to chaining and memory ports.
 
-use super::efficiency_table::{TableScene, TableSceneError, step};
+use super::efficiency_table::{TableScene, TableSceneError, programs_of_step};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::model::clock::{Clock, MemoryModel, ProgramWork, convoys};
@@ -13,7 +13,7 @@ use stripmine_physics::method::lattice_md::Part;
 const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-1", "sx-aurora"];
 
 /// Counts the default scene on every machine of the report.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let machines = MACHINES.map(machines::preset).into_iter().collect::<Result<Vec<_>, _>>()?;
     let ladders = machines.iter().map(|machine| Ladder::of(&TableScene::default(), machine));
     let ladders = ladders.collect::<Result<Vec<_>, _>>()?;
@@ -41,7 +41,7 @@ struct Ladder<'m> {
 
 impl Ladder<'_> {
     fn of<'m>(question: &TableScene, machine: &'m MachineModel) -> Result<Ladder<'m>, TableSceneError> {
-        let (programs, lengths) = step(question)?;
+        let (programs, lengths) = programs_of_step(question)?;
         let work = programs.iter().map(|step| {
             (step.part, ProgramWork::of(step.program.as_ref()), lengths.range(step.length).len() as u64)
         });

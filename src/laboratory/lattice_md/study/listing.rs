@@ -1,6 +1,6 @@
 //! Vector instructions of a step, as text.
 
-use super::efficiency_table::{TableScene, TableSceneError, step};
+use super::efficiency_table::{TableScene, TableSceneError, programs_of_step};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
@@ -8,7 +8,7 @@ use stripmine_physics::method::lattice_md::Part;
 
 /// Instructions and listing of the programs of a part.
 pub(crate) fn listing(part: Part, question: &TableScene) -> Result<(ResultFrame, String), TableSceneError> {
-    let (programs, lengths) = step(question)?;
+    let (programs, lengths) = programs_of_step(question)?;
     let (mut rows, mut text) = (vec![], String::new());
     for step in programs.iter().filter(|step| step.part == part) {
         let (length, n) = (step.length.symbol(), lengths.range(step.length).len());
@@ -28,7 +28,7 @@ pub(crate) fn listing(part: Part, question: &TableScene) -> Result<(ResultFrame,
 }
 
 /// Lists BP93's program, then ours.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let ours = TableScene::default();
     let printed = ours.printed();
     let (mut rows, mut files) = (vec![], vec![]);

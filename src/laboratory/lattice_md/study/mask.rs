@@ -8,7 +8,7 @@ use std::f64::consts::SQRT_2;
 use stripmine_kernels::mask::{Mask, Offset};
 
 /// Draws figure 2 and lists its offsets in order and the reach of both masks.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (mask, wider) = (Mask::square(2), Mask::square(3));
     let places = mask.offsets();
     // A mask of half-width h covers every contact on cells of 2R_max/h; cells of d_min/√2 hold one disc.

@@ -80,7 +80,7 @@ impl BenchRun {
 }
 
 /// Programs of a step of a scene, and its vector lengths.
-pub(super) fn step(checked: &CheckedGranularScene) -> (Vec<StepProgram>, Lengths) {
+pub(super) fn step_of_scene(checked: &CheckedGranularScene) -> (Vec<StepProgram>, Lengths) {
     let (model, discs) = (model(checked), &checked.particles);
     let lengths = Lengths::new(&model, discs.grain_count(), discs.len());
     (programs(&model, checked.scene.machine.precision), lengths)
@@ -178,16 +178,16 @@ impl PhaseTimedRun {
         Ok(1e9 * shortest)
     }
 
-    fn makings_a_step(&self) -> f64 {
+    fn list_builds_per_step(&self) -> f64 {
         self.made as f64 / self.steps.max(1) as f64
     }
 
     /// Mean amount of work per step.
-    pub(super) fn amounts(&self) -> Amounts {
+    pub(super) fn amounts_per_step(&self) -> Amounts {
         let (lists, timed) = (self.run.has_lists(), self.timed.max(1) as f64);
         let discs = self.checked.particles.grain_count();
         let cells = Lengths::new(&model(&self.checked), discs, self.checked.particles.len()).cells as f64;
-        let (discs, made) = (discs as f64, self.makings_a_step());
+        let (discs, made) = (discs as f64, self.list_builds_per_step());
         let near = HALF_MASK * discs * discs / cells.max(1.0);
         let candidates = if lists { self.entries as f64 / timed } else { near };
         let of_lists = |amount: f64| if lists { amount } else { 0.0 };
@@ -205,17 +205,17 @@ impl PhaseTimedRun {
 
     /// Nanoseconds of a phase per step, including list builds.
     pub(super) fn ns(&self, phase: Phase) -> f64 {
-        let making = self.makings_a_step() * self.making().unwrap_or(0.0);
-        self.upkeep(phase) + if phase == Phase::Index { making } else { 0.0 }
+        let making = self.list_builds_per_step() * self.list_build_time().unwrap_or(0.0);
+        self.phase_time_without_builds(phase) + if phase == Phase::Index { making } else { 0.0 }
     }
 
     /// Nanoseconds of a phase per step, without list builds.
-    pub(super) fn upkeep(&self, phase: Phase) -> f64 {
+    pub(super) fn phase_time_without_builds(&self, phase: Phase) -> f64 {
         self.phases[phase as usize].median().unwrap_or(0.0)
     }
 
     /// Nanoseconds of a list build; `None` if there was none.
-    pub(super) fn making(&self) -> Option<f64> {
+    pub(super) fn list_build_time(&self) -> Option<f64> {
         self.makings.median()
     }
 }

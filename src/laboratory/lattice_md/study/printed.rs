@@ -6,7 +6,7 @@ use super::samples::Samples;
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame, TableCell};
 use crate::laboratory::rates::{
-    self, CaseReading, MeasuredCase, ProcessSpread, RateCase, StudyWork, given, rates,
+    self, CaseReading, MeasuredCase, ProcessSpread, RateCase, StudyWork, measure_rates, parse_parameters,
 };
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use rand::RngExt;
@@ -52,9 +52,9 @@ const FAST: &str = "fast";
 pub(crate) const EAGER: StudyWork = StudyWork {
     name: "eager-parts",
     measure: |parameters| {
-        let (cells, occupancy, is_ours, samples): (usize, f64, bool, usize) = given(parameters)?;
+        let (cells, occupancy, is_ours, samples): (usize, f64, bool, usize) = parse_parameters(parameters)?;
         let choice = if is_ours { TableFeatures::default() } else { TableFeatures::default().printed() };
-        Ok(eager(cells, occupancy, choice, samples)?)
+        Ok(time_eager_step(cells, occupancy, choice, samples)?)
     },
 };
 
@@ -101,7 +101,7 @@ struct FittedPart {
 }
 
 /// Measures the parts of the eager step and every configuration.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (cells, occupancies, samples, discs): (Vec<usize>, &[f64], u64, usize) = match size {
         StudySize::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
         StudySize::Full | StudySize::All => ([&SHORT[..], &LONG].concat(), &[0.05, 0.1, 0.5, 1.0], 8, 10_000),
@@ -128,7 +128,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
         let steps = (200_000 / discs).clamp(4, 200) as u64;
         RateCase::steps("bench", &set, warm_up, steps).for_seconds(0.1).label("way", name)
     });
-    let measured = rates(lab, &parts.chain(ways).collect::<Vec<_>>())?;
+    let measured = measure_rates(lab, &parts.chain(ways).collect::<Vec<_>>())?;
     let (eager, ways) = measured.split_at(places.len());
     let all = places.iter().zip(eager).filter(|((.., ours), _)| !ours);
     let timed: Vec<TimedPart> = all
@@ -136,8 +136,8 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             SOURCES_PARTS.map(|part| TimedPart::of(part.name(), cells, occupancy, it))
         })
         .collect();
-    let fitted = SOURCES_PARTS.map(|part| fit(part.name(), &timed));
-    let frames = [over_vectors(&timed, &fitted), fits(&fitted), densities(&timed), prices(ways)];
+    let fitted = SOURCES_PARTS.map(|part| fit_clock_line(part.name(), &timed));
+    let frames = [vector_frame(&timed, &fitted), fits(&fitted), densities(&timed), configuration_costs(ways)];
     let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, false));
     let summary = FrameBuilder::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
         .cell("printed text, eager (µs)", |[printed, _]| printed.cost().cell(1e6, 0))
@@ -150,7 +150,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
 }
 
 /// Discs almost at rest, in a random share of the cells, one per cell.
-fn scattered(model: &GranularModel, occupancy: f64) -> Particles {
+fn scattered_discs(model: &GranularModel, occupancy: f64) -> Particles {
     let mut random = Stream::new(1, RandomPurpose::Placement, 0);
     let mut discs = vec![];
     for row in 0..model.shape.rows() {
@@ -178,14 +178,14 @@ fn scattered(model: &GranularModel, occupancy: f64) -> Particles {
 
 /// Median times of every part of an eager step on a lattice of about `cells` cells. The time does not depend on the data, so discs need not
 /// move; the step is so short that none leaves its cell.
-fn eager(
+fn time_eager_step(
     cells: usize,
     occupancy: f64,
     choice: TableFeatures,
     samples: usize,
 ) -> Result<CaseReading, MeasurementError> {
     let model = GranularModel { dt: 1e-9, ..counting_model(cells, choice)? };
-    let particles = scattered(&model, occupancy);
+    let particles = scattered_discs(&model, occupancy);
     let mut arrays = ProgramArrays::<f64, f64>::new(&model, &particles);
     drop(particles);
     let step = programs(&model, Precision::F64);
@@ -218,7 +218,7 @@ fn eager(
 }
 
 /// Fits a straight line to the shortest vectors, up to the length at which it fails.
-fn fit(part: &'static str, timed: &[TimedPart]) -> FittedPart {
+fn fit_clock_line(part: &'static str, timed: &[TimedPart]) -> FittedPart {
     let mut points: Vec<&TimedPart> =
         timed.iter().filter(|timed| timed.part == part && timed.occupancy == OCCUPANCY).collect();
     points.sort_by_key(|timed| timed.n);
@@ -229,7 +229,7 @@ fn fit(part: &'static str, timed: &[TimedPart]) -> FittedPart {
     // Through the shortest vectors, except one left out.
     let line = |count: usize, left_out: Option<usize>, ns: &dyn Fn(&TimedPart) -> f64| {
         let kept = points[..count].iter().enumerate().filter(|(at, _)| Some(*at) != left_out);
-        straight(&kept.map(|(_, timed)| (timed.n as f64, ns(timed) / nop as f64)).collect::<Vec<_>>())
+        straight_line(&kept.map(|(_, timed)| (timed.n as f64, ns(timed) / nop as f64)).collect::<Vec<_>>())
     };
     let median = |timed: &TimedPart| timed.ns().median;
     let worst = |count: usize| {
@@ -260,7 +260,7 @@ fn fit(part: &'static str, timed: &[TimedPart]) -> FittedPart {
 }
 
 /// Slope τ and D of y = τ (x + D), from least squares of the relative differences.
-fn straight(points: &[(f64, f64)]) -> [f64; 2] {
+fn straight_line(points: &[(f64, f64)]) -> [f64; 2] {
     let [mut w, mut wx, mut wxx, mut wy, mut wxy] = [0.0; 5];
     for &(x, y) in points {
         let weight = 1.0 / (y * y);
@@ -276,7 +276,7 @@ fn straight(points: &[(f64, f64)]) -> [f64; 2] {
 }
 
 /// Time per element and operation, with the line as far as it holds; no line for a part without a valid fit.
-fn over_vectors(timed: &[TimedPart], fitted: &[FittedPart]) -> ResultFrame {
+fn vector_frame(timed: &[TimedPart], fitted: &[FittedPart]) -> ResultFrame {
     let of_part = |part: &str| fitted.iter().find(|fitted| fitted.part == part && fitted.worst <= HOLDS);
     let line = |it: &TimedPart| {
         let fit = of_part(it.part).filter(|fit| it.n <= fit.holds_to)?;
@@ -316,15 +316,17 @@ fn densities(timed: &[TimedPart]) -> ResultFrame {
         .frame("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
 }
 
-fn prices(ways: &[MeasuredCase]) -> ResultFrame {
+fn configuration_costs(ways: &[MeasuredCase]) -> ResultFrame {
     let first = &ways[0];
     let before = std::iter::once(first).chain(ways);
     FrameBuilder::of(WAYS.iter().zip(ways).zip(before).enumerate())
         .count("step", |(at, _)| at + 1)
         .text("way", |(_, (((name, ..), _), _))| *name)
         .cell("ns a disc and step", |(_, ((_, own), _))| own.cost().cell(1e9, 1))
-        .number("times faster than the one before", 2, |(_, ((_, own), before))| own.over(before).median)
-        .number("times faster than the first", 1, |(_, ((_, own), _))| own.over(first).median)
+        .number("times faster than the one before", 2, |(_, ((_, own), before))| {
+            own.rate_ratio(before).median
+        })
+        .number("times faster than the first", 1, |(_, ((_, own), _))| own.rate_ratio(first).median)
         .frame("prices", "What each step of the development made of one scene")
 }
 
@@ -335,7 +337,7 @@ mod tests {
     #[test]
     fn a_line_gives_its_clock_period_and_depth() {
         let points: Vec<(f64, f64)> = [10.0, 100.0, 1000.0, 1e5].map(|n| (n, 0.3 * (n + 20.0))).to_vec();
-        let [period, depth] = straight(&points);
+        let [period, depth] = straight_line(&points);
         assert!((period - 0.3).abs() < 1e-12 && (depth - 20.0).abs() < 1e-9, "{period} {depth}");
     }
 
@@ -352,7 +354,7 @@ mod tests {
     fn the_fit_ends_where_the_line_breaks() {
         let slow = |n| if n > 50_000 { 3.0 } else { 1.0 };
         let timed = timed(|n| 100.0 * 0.2 * (n as f64 + 30.0) * slow(n));
-        let fitted = fit("forces", &timed);
+        let fitted = fit_clock_line("forces", &timed);
         assert_eq!(fitted.holds_to, 10_000);
         assert!((fitted.period.median - 0.2).abs() < 1e-9 && (fitted.depth.median - 30.0).abs() < 1e-6);
         assert!(fitted.period.range[0] < 0.199 && fitted.period.range[1] > 0.201);
@@ -363,7 +365,7 @@ mod tests {
     #[test]
     fn a_line_that_fails_is_not_drawn() {
         let drawn = |timed: &[TimedPart]| {
-            let frame = over_vectors(timed, &[fit("forces", timed)]);
+            let frame = vector_frame(timed, &[fit_clock_line("forces", timed)]);
             let at = frame.position("line").unwrap();
             frame.rows.iter().filter(|row| matches!(row[at], crate::frame::FrameValue::Number(_))).count()
         };
@@ -373,7 +375,7 @@ mod tests {
 
     #[test]
     fn every_part_of_the_table_is_timed() {
-        let reading = eager(400, 0.5, TableFeatures::default().printed(), 1).unwrap();
+        let reading = time_eager_step(400, 0.5, TableFeatures::default().printed(), 1).unwrap();
         for part in SOURCES_PARTS.map(Part::name) {
             let count = |kind: &str| reading.counts[&format!("{kind} of {part}")];
             assert!(count("n") > 100.0 && count("NOP") > 10.0 && reading.parts[part] > 0.0, "{reading:?}");

@@ -1,9 +1,9 @@
 //! Fastest neighbour search: rates by particles, density, search, precision and threads, compared with the methods of 1993.
 
-use super::density_cost::{crossing, power};
+use super::density_cost::{crossing, power_of_density};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame, TableCell};
-use crate::laboratory::rates::{self, MeasuredCase, RateCase, rates};
+use crate::laboratory::rates::{self, MeasuredCase, RateCase, measure_rates};
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use std::f64::consts::PI;
@@ -136,7 +136,7 @@ fn fast(scene: Overrides) -> Overrides {
 }
 
 /// All distinct cases of a grid.
-fn places(grid: &SearchGrid, threads: usize) -> Vec<SearchCase> {
+fn search_cases(grid: &SearchGrid, threads: usize) -> Vec<SearchCase> {
     let crossed = |searches: &[&'static str], discs: &[usize], fractions: &[f64]| {
         let of = |search, discs| fractions.iter().map(move |&phi| SearchCase::of(search, discs, phi));
         let each = searches.iter().flat_map(|&search| discs.iter().map(move |&discs| (search, discs)));
@@ -172,16 +172,16 @@ struct SearchRates<'g> {
 }
 
 /// Measures every case of the grid.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let grid = if size == StudySize::Quick { &QUICK } else { &FULL };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let places = places(grid, threads);
+    let places = search_cases(grid, threads);
     let cases: Vec<RateCase> = places.iter().map(|it| it.case(grid.seconds)).collect();
-    let measured = rates(lab, &cases)?;
+    let measured = measure_rates(lab, &cases)?;
     let data = SearchRates { grid, all: places.into_iter().zip(measured).collect() };
     let single = data.all.iter().filter(|(place, _)| place.threads.is_none()).map(|(_, it)| it.clone());
     let title = "Million particle-steps a second of processor time, one thread";
-    let all = rates::frame(&single.collect::<Vec<_>>(), ("rates", title), ("rate (M/s)", 1e-6, 2));
+    let all = rates::rate_frame(&single.collect::<Vec<_>>(), ("rates", title), ("rate (M/s)", 1e-6, 2));
     let [break_even, summary] = data.break_even();
     let frames =
         [all, data.lost(), data.fastest()?, data.crossings(), break_even, data.threads(threads), summary];
@@ -201,7 +201,7 @@ impl SearchRates<'_> {
     }
 
     /// Searches of today for a number of discs and a packing fraction, the fastest first.
-    fn ranked(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &MeasuredCase)> {
+    fn ranked_searches(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &MeasuredCase)> {
         let each = |search| Some((search, self.at(SearchCase::of(search, discs, packing_fraction))?));
         let mut all: Vec<_> = TODAY.into_iter().filter_map(each).collect();
         all.sort_by(|a, b| b.1.rate().median.total_cmp(&a.1.rate().median));
@@ -213,7 +213,7 @@ impl SearchRates<'_> {
         let rows = TODAY.into_iter().flat_map(|search| self.grid().map(move |place| (search, place)));
         let rows = rows.filter_map(|(search, (discs, phi))| {
             let own = self.at(SearchCase::of(search, discs, phi))?;
-            Some((search, discs, phi, self.ranked(discs, phi)[0].1.over(own)))
+            Some((search, discs, phi, self.ranked_searches(discs, phi)[0].1.rate_ratio(own)))
         });
         FrameBuilder::of(rows)
             .text("search", |row| row.0)
@@ -229,10 +229,10 @@ impl SearchRates<'_> {
         for (discs, phi) in self.grid() {
             let scene = Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, phi);
             let auto = GranularDocument::load("bench", &fast(scene).texts())?.check()?.scene.search.by.word();
-            let ranked = self.ranked(discs, phi);
+            let ranked = self.ranked_searches(discs, phi);
             let Some((first, best)) = ranked.first() else { continue };
             let own = ranked.iter().find(|(name, _)| *name == auto);
-            rows.push((discs, phi, *first, best.rate(), auto, own.map(|(_, own)| best.over(own))));
+            rows.push((discs, phi, *first, best.rate(), auto, own.map(|(_, own)| best.rate_ratio(own))));
         }
         Ok(FrameBuilder::of(rows)
             .count("discs", |row| row.0)
@@ -253,7 +253,7 @@ impl SearchRates<'_> {
                 let own = |search| self.at(SearchCase { precision, ..SearchCase::of(search, discs, phi) });
                 let rivals = TODAY[1..].iter().filter_map(|&search| own(search));
                 let best = rivals.max_by(|a, b| a.rate().median.total_cmp(&b.rate().median))?;
-                Some((phi, own(TODAY[0])?.over(best).median))
+                Some((phi, own(TODAY[0])?.rate_ratio(best).median))
             });
             let ratios: Vec<(f64, f64)> = ratios.collect();
             let densest = ratios.first()?.1;
@@ -273,12 +273,12 @@ impl SearchRates<'_> {
         let rows = occupancies.iter().map(|rho| {
             let ratios = discs.iter().rev().filter_map(|&discs| {
                 let own = |search| self.at(SearchCase::of(search, discs, PI * rho));
-                Some((discs as f64, own(CHAINED)?.over(own(ALL_PAIRS)?).median))
+                Some((discs as f64, own(CHAINED)?.rate_ratio(own(ALL_PAIRS)?).median))
             });
             (*rho, crossing(&ratios.collect::<Vec<_>>()))
         });
         let rows: Vec<(f64, Option<f64>)> = rows.collect();
-        let power = power(rows.iter().copied());
+        let power = power_of_density(rows.iter().copied());
         let title = "Discs from which on the lattice's programs are faster than lists of all pairs";
         let table =
             FrameBuilder::of(rows).number("occupancy ρ", 2, |row| row.0).number("discs", 0, |row| row.1);
@@ -302,7 +302,7 @@ impl SearchRates<'_> {
             .cell("one thread (M/s)", |(_, alone, _)| alone.rate().cell(1e-6, 1))
             .count("threads", |_| threads)
             .cell("all threads (M/s)", |(.., all)| all.rate().cell(1e-6, 1))
-            .cell("times as fast", |(_, alone, all)| all.over(alone).cell(1.0, 2))
+            .cell("times as fast", |(_, alone, all)| all.rate_ratio(alone).cell(1.0, 2))
             .frame("threads", title)
     }
 }
@@ -311,16 +311,16 @@ impl SearchRates<'_> {
 mod tests {
     use super::*;
     use crate::frame::FrameValue;
-    use crate::laboratory::running::prepared;
+    use crate::laboratory::running::prepare_preset;
 
     /// Every case of both sizes is a valid scene, and no case occurs twice.
     #[test]
     fn every_case_of_the_grids_is_valid() {
         for (grid, count) in [(&QUICK, 21), (&FULL, 161)] {
-            let all = places(grid, 2);
+            let all = search_cases(grid, 2);
             assert_eq!(all.len(), count);
             for place in all.iter().filter(|it| it.discs <= MIDDLE || grid.discs.len() == 1) {
-                prepared("bench", &place.scene()).unwrap_or_else(|error| panic!("{place:?}: {error}"));
+                prepare_preset("bench", &place.scene()).unwrap_or_else(|error| panic!("{place:?}: {error}"));
             }
         }
     }
@@ -335,7 +335,8 @@ mod tests {
             let seconds = if place.search == CHAINED { 50.0 / rho } else { 0.1 * place.discs as f64 };
             (place, MeasuredCase::of([reading(seconds)]))
         };
-        let data = SearchRates { grid: &FULL, all: places(&FULL, 2).into_iter().map(measured).collect() };
+        let data =
+            SearchRates { grid: &FULL, all: search_cases(&FULL, 2).into_iter().map(measured).collect() };
         let [table, summary] = data.break_even();
         let number =
             |value: &FrameValue| if let FrameValue::Number(number) = value { *number } else { f64::NAN };

@@ -1,21 +1,21 @@
 //! Share of the counted operations that act on real contacts, by method and density.
 
 use super::StudyError;
-use super::density_cost::{CEILING, ListStatistics, OCCUPANCIES, list_figures};
-use super::efficiency_table::{TableScene, model_of, step};
+use super::density_cost::{CEILING, ListStatistics, OCCUPANCIES, list_statistics};
+use super::efficiency_table::{TableScene, programs_of_step, scene_model};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, TableCell};
-use crate::results::{FinishedItem, StudyEnvironment, StudySize, side_by_side};
+use crate::results::{FinishedItem, StudyEnvironment, StudySize, run_in_parallel};
 use stripmine_kernels::isa::OpClass;
 use stripmine_kernels::ledger::{Ledger, VectorLength};
-use stripmine_physics::method::lattice_md::{Part, ledger, rival_ledger};
+use stripmine_physics::method::lattice_md::{Part, ledger, neighbour_list_ledger};
 
 /// Counts operations; the contacts are those of a warm gas.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let occupancies = [0.01, 0.025].into_iter().chain(OCCUPANCIES);
     let reachable: Vec<f64> = occupancies.filter(|&occupancy| occupancy < CEILING).collect();
-    let rows = side_by_side(&reachable, |&occupancy| -> Result<_, StudyError> {
-        let figures = list_figures(occupancy)?;
+    let rows = run_in_parallel(&reachable, |&occupancy| -> Result<_, StudyError> {
+        let figures = list_statistics(occupancy)?;
         Ok((figures, shares(figures)?))
     })?;
     let shares = ["lattice, forces", "lattice, step", "lists, forces", "lists, step"];
@@ -32,7 +32,7 @@ pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedIte
 /// offset of every cell. Building the lists is not counted.
 fn shares(figures: ListStatistics) -> Result<[f64; 4], StudyError> {
     let question = TableScene { occupancy: figures.occupancy, ..TableScene::default() };
-    let (programs, lengths) = step(&question)?;
+    let (programs, lengths) = programs_of_step(&question)?;
     let discs = question.particles as f64;
     let contacts = figures.contacts * discs;
     let lattice = ledger(&programs);
@@ -54,7 +54,7 @@ fn shares(figures: ListStatistics) -> Result<[f64; 4], StudyError> {
         };
         parts.map(|(_, length, counts)| n(length) * counts.total() as f64).sum()
     };
-    let lists = rival_ledger(&model_of(&question)?);
+    let lists = neighbour_list_ledger(&scene_model(&question)?);
     let pairs = lists
         .entries()
         .iter()

@@ -1,11 +1,13 @@
 //! `stripmine calibrate`: times of this host's operations.
 
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress, say, warn};
+use crate::console::{
+    CommandFailure, Common, clear_progress, print, print_json, print_message, progress, warn,
+};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
 use clap::Args;
 use std::io;
 use std::path::PathBuf;
-use stripmine_physics::io::replace::{may_put, put, try_beside};
+use stripmine_physics::io::replace::{check_folder_writable, check_may_write, write_atomically_new};
 use stripmine_physics::signals;
 
 /// Measures this host's operations and caches, and writes a host file that also records the state of the machine
@@ -27,9 +29,9 @@ pub(super) const SECONDS: u16 = 75;
 
 impl CalibrateVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
-        may_put(&self.out, self.force, "--force writes over it, --out elsewhere")?;
+        check_may_write(&self.out, self.force, "--force writes over it, --out elsewhere")?;
         // An unwritable location is found before minutes of measuring.
-        try_beside(&self.out).map_err(self.failed())?;
+        check_folder_writable(&self.out).map_err(self.failed())?;
         let bar = progress(common, "calibrate");
         let model = calibrate(self.seconds.into(), |share| bar.set_position((1e3 * share) as u64))?;
         clear_progress();
@@ -38,9 +40,10 @@ impl CalibrateVerb {
         }
         let text = model.to_toml().map_err(io::Error::other).map_err(self.failed())?;
         // Written before anything is printed: the reader of the output may close the pipe.
-        signals::whole(|| put(&self.out, &text, self.force)).map_err(self.failed())?;
+        signals::run_protected(|| write_atomically_new(&self.out, &text, self.force))
+            .map_err(self.failed())?;
         if !common.quiet {
-            say(format_args!("written: {}", self.out.display()));
+            print_message(format_args!("written: {}", self.out.display()));
         }
         if common.json {
             return print_json(&model);

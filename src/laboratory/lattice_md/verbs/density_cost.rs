@@ -3,7 +3,7 @@
 use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress};
 use crate::laboratory::lattice_md::study::density_cost::density_cost;
 use crate::laboratory::lattice_md::study::searches;
-use crate::laboratory::written;
+use crate::laboratory::write_result;
 use crate::model::machines;
 use crate::results::{Folder, StudyEnvironment, StudySize};
 use clap::Args;
@@ -28,10 +28,10 @@ impl DensityCostVerb {
         let bar = progress(common, "chart");
         let start = Instant::now();
         let cost = density_cost(&machine)?;
-        let said = written(&folder, ("cost", &cost), start, common)?;
+        let said = write_result(&folder, ("cost", &cost), start, common)?;
         let (start, show) = (Instant::now(), |share: f64| bar.set_position((1e3 * share) as u64));
-        let searches = searches::made(&StudyEnvironment::apart(&show), StudySize::Quick)?;
-        let also_said = written(&folder, ("searches", &searches), start, common)?;
+        let searches = searches::reproduce(&StudyEnvironment::apart(&show), StudySize::Quick)?;
+        let also_said = write_result(&folder, ("searches", &searches), start, common)?;
         clear_progress();
         match common.json {
             true => print_json(&serde_json::json!({ "cost": cost.json(), "searches": searches.json() })),

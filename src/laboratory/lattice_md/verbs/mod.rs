@@ -22,7 +22,7 @@ macro_rules! verbs {
         &[$(Verb {
             name: $name,
             command: |command| $arguments::augment_args(command),
-            run: |matches, common| carried_out::<$arguments>(matches, common, $arguments::run),
+            run: |matches, common| run_verb::<$arguments>(matches, common, $arguments::run),
         }),*]
     };
 }
@@ -40,7 +40,7 @@ pub(super) const CHARTS: &[Verb] = verbs! {
     "density-cost" DensityCostVerb,
 };
 
-fn carried_out<A: Args + FromArgMatches>(
+fn run_verb<A: Args + FromArgMatches>(
     matches: &clap::ArgMatches,
     common: &Common,
     run: fn(&A, &Common) -> Result<(), CommandFailure>,
@@ -49,7 +49,7 @@ fn carried_out<A: Args + FromArgMatches>(
 }
 
 /// Prints a result: every frame as a table, or all of them as JSON.
-fn print_made(made: &FinishedItem, common: &Common) -> Result<(), CommandFailure> {
+fn print_result(made: &FinishedItem, common: &Common) -> Result<(), CommandFailure> {
     let tables = made.frames.iter().map(|frame| terminal::render(&FormattedTable::from(frame)));
     if common.json { print_json(&made.json()) } else { print(&tables.collect::<Vec<_>>().join("\n")) }
 }

@@ -1,6 +1,6 @@
 //! `stripmine table`: efficiency table, and ladder of clock models.
 
-use super::print_made;
+use super::print_result;
 use crate::console::{CommandFailure, Common};
 use crate::laboratory::lattice_md::study::efficiency_table::{TableScene, efficiency_table};
 use crate::laboratory::lattice_md::study::ladder::ladder;
@@ -32,6 +32,6 @@ impl TableVerb {
             true => ladder(&question, &machine)?,
             false => efficiency_table(&question, &machine)?,
         };
-        print_made(&made, common)
+        print_result(&made, common)
     }
 }

@@ -1,13 +1,13 @@
 //! `stripmine validate-model`: comparison of the host model with wall time.
 
 use super::calibrate::SECONDS;
-use super::print_made;
-use crate::console::{CommandFailure, Common, clear_progress, progress, say, warn};
+use super::print_result;
+use crate::console::{CommandFailure, Common, clear_progress, print_message, progress, warn};
 use crate::laboratory::lattice_md::study::calibration::calibrate;
 use crate::laboratory::lattice_md::study::model_validation::{
-    ValidationSize, calibrated_now, model_validation,
+    ValidationSize, fresh_model_title, model_validation,
 };
-use crate::laboratory::written;
+use crate::laboratory::write_result;
 use crate::model::host::{HostModel, MeasurementConditions, default_model};
 use crate::results::Folder;
 use clap::Args;
@@ -65,7 +65,7 @@ fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String
     let note = |warns: bool, words: fmt::Arguments<'_>| match common.quiet {
         true => (),
         false if warns => warn(words),
-        false => say(words),
+        false => print_message(words),
     };
     let Some(file) = file else {
         let model = default_model()?;
@@ -109,7 +109,7 @@ impl ValidateModelVerb {
         let begun = if self.calibrate { CALIBRATION } else { 0.0 };
         let (model, whose) = if self.calibrate {
             let model = calibrate(SECONDS.into(), |share| show(begun * share))?;
-            let whose = calibrated_now(&model);
+            let whose = fresh_model_title(&model);
             (model, whose)
         } else {
             host_model(self.host.as_deref(), common)?
@@ -123,8 +123,8 @@ impl ValidateModelVerb {
             made.files.push(("host.toml".to_owned(), text));
         }
         if let Some(folder) = folder {
-            written(&folder, ("validation", &made), start, common)?;
+            write_result(&folder, ("validation", &made), start, common)?;
         }
-        print_made(&made, common)
+        print_result(&made, common)
     }
 }

@@ -79,8 +79,9 @@ impl Sphere {
 }
 
 /// Simulates a sphere for each seed.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
-    let all = ProgressMeter::new(SEEDS.len() as f64, lab.progress).each(&SEEDS, |&seed| sphere(seed))?;
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+    let all = ProgressMeter::new(SEEDS.len() as f64, lab.progress)
+        .run_cases(&SEEDS, |&seed| simulate_sphere(seed))?;
     let mean = |of: &dyn Fn(&Sphere) -> f64, decimals: usize| {
         let MeanWithBar { value, bar } = MeanWithBar::of(&all.iter().map(of).collect::<Vec<_>>());
         TableCell::with_error(value, Some(bar), decimals)
@@ -181,16 +182,17 @@ fn film(sphere: &Sphere) -> Film {
     }
 }
 
-fn sphere(seed: u64) -> Result<Sphere, StudyError> {
+fn simulate_sphere(seed: u64) -> Result<Sphere, StudyError> {
     let mut running =
-        RunningScene::timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES).set(&SEED, seed))?;
+        RunningScene::begin_timed("cold-collapse", &Overrides::new().set(&COUNT, BODIES).set(&SEED, seed))?;
     let (mut moments, mut late) = (vec![], vec![]);
     for sample in 0..=SAMPLES {
         if sample > 0 {
-            running.steps(BETWEEN)?;
+            running.advance_steps(BETWEEN)?;
         }
         let names = ["time", "virial_ratio", "half_mass_radius", "energy_error", "momentum"];
-        let [time, virial_ratio, half_mass_radius, energy_error, momentum] = running.observed(names)?;
+        let [time, virial_ratio, half_mass_radius, energy_error, momentum] =
+            running.observed_values(names)?;
         let particles = running.simulation.particles();
         let bodies = particles.all().iter().take(SHOWN).map(|body| {
             let [x, y, _] = body.position;
@@ -198,7 +200,7 @@ fn sphere(seed: u64) -> Result<Sphere, StudyError> {
         });
         let bodies = bodies.collect();
         if time > LATE && sample.is_multiple_of(8) {
-            late.push(bound(time, &particles));
+            late.push(bound_bodies(time, &particles));
         }
         moments.push(Moment { time, virial_ratio, half_mass_radius, energy_error, momentum, bodies });
     }
@@ -206,7 +208,7 @@ fn sphere(seed: u64) -> Result<Sphere, StudyError> {
 }
 
 /// Bound bodies: those with positive energy are removed repeatedly until none is left.
-fn bound(time: f64, particles: &Particles) -> BoundBodies {
+fn bound_bodies(time: f64, particles: &Particles) -> BoundBodies {
     // Value of the preset.
     const SOFTENING: f64 = 0.03;
     let mut inside: Vec<&Particle> = particles.all().iter().collect();

@@ -2,7 +2,7 @@
 
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame, TableCell};
-use crate::laboratory::running::{RunningScene, bisected};
+use crate::laboratory::running::{RunningScene, bisect_range};
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use crate::study::StudyError;
 use stripmine_physics::method::nbody::keys::{DAMPING, ECCENTRICITY, INTEGRATOR};
@@ -54,7 +54,7 @@ fn overrides(scheme: SchemeName, steps: u64, eccentricity: f64) -> Overrides {
 }
 
 /// Measures every scheme.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
     let schemes: Vec<SchemeName> = SchemeName::ALL.iter().map(|(scheme, _)| *scheme).collect();
     let orbits: Vec<(SchemeName, u64)> =
@@ -67,8 +67,8 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedI
     let eccentric: Vec<(SchemeName, f64)> =
         kept.flat_map(|&scheme| ECCENTRICITIES.map(|eccentricity| (scheme, eccentricity))).collect();
     let meter = ProgressMeter::new((orbits.len() + eccentric.len()) as f64, progress);
-    let orbits = meter.each_from_last(&orbits, |&(scheme, steps)| orbit(scheme, steps))?;
-    let edges = meter.each(&eccentric, |&(scheme, eccentricity)| edge(scheme, eccentricity))?;
+    let orbits = meter.run_cases_from_last(&orbits, |&(scheme, steps)| simulate_orbit(scheme, steps))?;
+    let edges = meter.run_cases(&eccentric, |&(scheme, eccentricity)| fewest_steps(scheme, eccentricity))?;
     let damped = STEPS.into_iter().map(|steps| damped_orbit(steps, 0.9999)).collect::<Result<Vec<_>, _>>()?;
     Ok(FinishedItem::of([
         errors(&orbits, schemes.iter().rev().copied()),
@@ -138,24 +138,24 @@ fn errors(orbits: &[Orbit], schemes: impl Iterator<Item = SchemeName>) -> Result
 
 /// Present total energy. Published errors are relative to it, since the energy of an orbit is far from zero.
 fn energy(running: &RunningScene) -> Result<f64, StudyError> {
-    let [kinetic, potential] = running.observed(["kinetic", "potential"])?;
+    let [kinetic, potential] = running.observed_values(["kinetic", "potential"])?;
     Ok(kinetic + potential)
 }
 
-fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
-    let mut running = RunningScene::timed("kepler", &overrides(scheme, steps, 0.5))?;
+fn simulate_orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
+    let mut running = RunningScene::begin_timed("kepler", &overrides(scheme, steps, 0.5))?;
     let names = ["momentum", "angular_momentum_z"];
-    let (turning, start) = (running.observed(names)?[1], energy(&running)?);
+    let (turning, start) = (running.observed_values(names)?[1], energy(&running)?);
     let (mut largest, mut drift, before) = (0.0f64, [0.0f64; 2], running.simulation.work());
     let mut done = Ok(());
     // Frequent enough for a dozen samples during the pericentre passage.
     let between = steps.div_ceil(LOOKS);
     for _ in 0..ORBITS * steps / between {
-        done = running.steps(between);
+        done = running.advance_steps(between);
         if done.is_err() {
             break;
         }
-        let ([momentum, angular], error) = (running.observed(names)?, energy(&running)? / start - 1.0);
+        let ([momentum, angular], error) = (running.observed_values(names)?, energy(&running)? / start - 1.0);
         largest = largest.max(error.abs());
         drift = [drift[0].max(momentum), drift[1].max((angular - turning).abs())];
     }
@@ -165,11 +165,11 @@ fn orbit(scheme: SchemeName, steps: u64) -> Result<Orbit, StudyError> {
 }
 
 /// Returns true if an orbit is kept.
-fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, StudyError> {
-    let mut running = RunningScene::timed("kepler", &overrides(scheme, steps, eccentricity))?;
+fn keeps_orbit(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, StudyError> {
+    let mut running = RunningScene::begin_timed("kepler", &overrides(scheme, steps, eccentricity))?;
     let start = energy(&running)?;
     for _ in 0..ORBITS {
-        if running.steps(steps).is_err() {
+        if running.advance_steps(steps).is_err() {
             return Ok(false);
         }
         let error = energy(&running)? / start - 1.0;
@@ -181,25 +181,25 @@ fn keeps(scheme: SchemeName, steps: u64, eccentricity: f64) -> Result<bool, Stud
 }
 
 /// Fewest steps per orbit that keep it; `None` if [`MOST`] steps do not.
-fn edge(scheme: SchemeName, eccentricity: f64) -> Result<Option<u64>, StudyError> {
+fn fewest_steps(scheme: SchemeName, eccentricity: f64) -> Result<Option<u64>, StudyError> {
     let (mut low, mut high) = (4, 8);
-    while !keeps(scheme, high, eccentricity)? {
+    while !keeps_orbit(scheme, high, eccentricity)? {
         if high >= MOST {
             return Ok(None);
         }
         (low, high) = (high, 2 * high);
     }
     let is_narrow = |[low, high]: [u64; 2]| high <= low + low.div_ceil(16);
-    let loses = |steps: u64| Ok::<_, StudyError>(!keeps(scheme, steps, eccentricity)?);
-    Ok(Some(bisected([low, high], is_narrow, u64::midpoint, loses)?[1]))
+    let loses = |steps: u64| Ok::<_, StudyError>(!keeps_orbit(scheme, steps, eccentricity)?);
+    Ok(Some(bisect_range([low, high], is_narrow, u64::midpoint, loses)?[1]))
 }
 
 /// Steps per orbit, damping, and the energy after ten orbits over its initial value; `None` if positions become infinite.
 fn damped_orbit(steps: u64, damping: f64) -> Result<(u64, f64, Option<f64>), StudyError> {
     let overrides = overrides(SchemeName::DampedEuler, steps, 0.5).set(&DAMPING, damping);
-    let mut running = RunningScene::timed("kepler", &overrides)?;
+    let mut running = RunningScene::begin_timed("kepler", &overrides)?;
     let start = energy(&running)?;
-    let done = running.steps(10 * steps);
+    let done = running.advance_steps(10 * steps);
     let ratio = 1.0 + (energy(&running)? / start - 1.0);
     Ok((steps, damping, done.is_ok().then_some(ratio)))
 }

@@ -2,7 +2,7 @@
 
 use crate::console::CommandFailure;
 use crate::frame::FrameBuilder;
-use crate::laboratory::rates::{CaseReading, RateCase, StudyWork, given, rates};
+use crate::laboratory::rates::{CaseReading, RateCase, StudyWork, measure_rates, parse_parameters};
 use crate::laboratory::running::{RunningScene, on_threads};
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use crate::study::StudyError;
@@ -10,12 +10,12 @@ use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_physics::method;
 use stripmine_physics::method::nbody::bodies::{PointMasses, zeros};
-use stripmine_physics::method::nbody::field::{GravityField, never, potential};
+use stripmine_physics::method::nbody::field::{GravityField, never_stop, potential};
 use stripmine_physics::method::nbody::keys::{ROOTS, SOFTENING};
 use stripmine_physics::method::nbody::options::{ArithmeticKind, StartKind};
 use stripmine_physics::method::nbody::scene::NbodyScene;
 use stripmine_physics::method::nbody::schemes::AccelerationField;
-use stripmine_physics::method::nbody::starts::bodies;
+use stripmine_physics::method::nbody::starts::initial_bodies;
 use stripmine_physics::particles::{Particle, Particles};
 use stripmine_physics::scene::{DT, Overrides, PRECISION, Precision};
 use stripmine_physics::words::Words;
@@ -38,10 +38,10 @@ const THREADS: [usize; 2] = [1, 2];
 
 /// Measured work other than runs of scenes: evaluations of all forces.
 pub(in crate::laboratory::nbody) static WORKS: [StudyWork; 1] =
-    [StudyWork { name: "nbody-forces", measure: forces }];
+    [StudyWork { name: "nbody-forces", measure: time_forces }];
 
 /// Measures every combination.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (counts, seconds): (&[usize], f64) =
         if size == StudySize::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
     let all: Vec<(usize, usize)> =
@@ -54,8 +54,9 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             .label("arithmetic", arithmetic.word())
     };
     let cases: Vec<RateCase> = all.iter().flat_map(|it| THREADS.map(|threads| case(it, threads))).collect();
-    let measured = rates(lab, &cases)?;
-    let errors = all.iter().map(|&(count, way)| errors(count, way)).collect::<Result<Vec<_>, _>>()?;
+    let measured = measure_rates(lab, &cases)?;
+    let errors =
+        all.iter().map(|&(count, way)| errors_of_forces(count, way)).collect::<Result<Vec<_>, _>>()?;
     let rows =
         all.iter().zip(measured.chunks(2)).zip(&errors).map(|((&(count, way), threads), (error, _))| {
             (count, WAYS[way], &threads[0], &threads[1], error)
@@ -72,7 +73,7 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
             .text("arithmetic", |(_, (_, arithmetic), ..)| arithmetic.word())
             .cell("1 thread (10⁹/s)", |(_, _, one, ..)| one.rate().cell(1e-9, 2))
             .cell("2 threads (10⁹/s)", |(_, _, _, two, _)| two.rate().cell(1e-9, 2))
-            .cell("ratio", |(_, _, one, two, _)| two.over(one).cell(1.0, 2))
+            .cell("ratio", |(_, _, one, two, _)| two.rate_ratio(one).cell(1.0, 2))
             .short("force error", |(.., error)| error[0])
             .short("with rounded masses", |(.., error)| error[1])
             .frame(
@@ -97,23 +98,24 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
 }
 
 /// Scene of a combination, and its Plummer sphere.
-fn sphere(count: usize, way: usize) -> (NbodyScene, PointMasses) {
+fn plummer_scene(count: usize, way: usize) -> (NbodyScene, PointMasses) {
     let (precision, arithmetic) = WAYS[way];
     let mut scene = NbodyScene { softening: SHARP, precision, arithmetic, ..NbodyScene::default() };
     (scene.start.kind, scene.start.count) = (StartKind::Plummer, count);
-    let all = PointMasses::new(bodies(&scene.start, SHARP, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
+    let all =
+        PointMasses::new(initial_bodies(&scene.start, SHARP, 1.0).into_iter().map(|(m, r, v)| (r, v, m)));
     (scene, all)
 }
 
 /// Times evaluations of the forces. Parameters: number of bodies, index into [`WAYS`], minimum seconds.
-fn forces(parameters: &serde_json::Value) -> Result<CaseReading, StudyError> {
-    let (count, way, least): (usize, usize, f64) = given(parameters)?;
-    let (scene, all) = sphere(count, way);
+fn time_forces(parameters: &serde_json::Value) -> Result<CaseReading, StudyError> {
+    let (count, way, least): (usize, usize, f64) = parse_parameters(parameters)?;
+    let (scene, all) = plummer_scene(count, way);
     let mut field = GravityField::new(&scene, &all)?;
     let mut into = zeros(all.entries());
     let mut sweep = || {
         field
-            .asking(false, &never)
+            .for_step(false, &never_stop)
             .acceleration(&all.position, &mut into)
             .map_err(method::PhysicsFailure::from)
     };
@@ -129,14 +131,14 @@ fn forces(parameters: &serde_json::Value) -> Result<CaseReading, StudyError> {
 
 /// Largest error of an acceleration over the largest acceleration: first for masses in the kernel's precision, then including the rounding of
 /// masses to single precision. Also true if two threads give the bits of one.
-fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
-    let (scene, all) = sphere(count, way);
+fn errors_of_forces(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
+    let (scene, all) = plummer_scene(count, way);
     let on = |threads: usize| {
         on_threads(threads, || {
             let mut into = zeros(all.entries());
             let mut field = GravityField::new(&scene, &all)?;
             field
-                .asking(false, &never)
+                .for_step(false, &never_stop)
                 .acceleration(&all.position, &mut into)
                 .map_err(method::PhysicsFailure::from)?;
             Ok(into)
@@ -147,7 +149,7 @@ fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
         let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
         // Evenly spaced sample of the bodies.
         for body in (0..count).step_by((count / SAMPLED).max(1)) {
-            let expected = written_down(&all, body, scene.softening, is_rounded);
+            let expected = direct_acceleration(&all, body, scene.softening, is_rounded);
             for (axis, expected) in expected.into_iter().enumerate() {
                 largest = largest.max(expected.abs());
                 worst = worst.max((one[axis][body] - expected).abs());
@@ -160,7 +162,7 @@ fn errors(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
 
 /// Acceleration of a body by direct summation with Neumaier's compensation. If `is_rounded`, masses are first rounded to single precision as
 /// in the kernel.
-fn written_down(all: &PointMasses, body: usize, softening: f64, is_rounded: bool) -> [f64; 3] {
+fn direct_acceleration(all: &PointMasses, body: usize, softening: f64, is_rounded: bool) -> [f64; 3] {
     let seen = |value: f64| if is_rounded { f64::from(value as f32) } else { value };
     let mut sums = [[0.0_f64; 2]; 3];
     for other in (0..all.len()).filter(|&other| other != body) {
@@ -186,7 +188,8 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
     let position = [0, 1, 2].map(|axis| all.iter().map(|body| body.position[axis]).collect());
     let square = |body: &Particle| body.velocity.iter().map(|v| v * v).sum::<f64>();
     let kinetic: f64 = all.iter().map(|body| 0.5 * body.mass * square(body)).sum();
-    let potential = potential(&mass, &position, softening, &never).map_err(method::PhysicsFailure::from)?;
+    let potential =
+        potential(&mass, &position, softening, &never_stop).map_err(method::PhysicsFailure::from)?;
     Ok(kinetic + potential)
 }
 
@@ -194,8 +197,8 @@ fn energy(particles: &Particles, softening: f64) -> Result<f64, StudyError> {
 fn energy_error((precision, arithmetic): (Precision, ArithmeticKind), steps: u64) -> Result<f64, StudyError> {
     let machine = Overrides::new().set(&PRECISION, precision).set(&ROOTS, arithmetic);
     let overrides = machine.set(&DT, 1.0 / steps as f64).set(&SOFTENING, SOFTENED);
-    let mut running = RunningScene::timed("plummer", &overrides)?;
+    let mut running = RunningScene::begin_timed("plummer", &overrides)?;
     let begin = energy(&running.simulation.particles(), SOFTENED)?;
-    running.steps(2 * steps)?;
+    running.advance_steps(2 * steps)?;
     Ok((energy(&running.simulation.particles(), SOFTENED)? / begin - 1.0).abs())
 }

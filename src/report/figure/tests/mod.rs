@@ -80,7 +80,7 @@ fn chart_of(picture: &mut Picture) -> &mut Chart {
 }
 
 /// Samples and crowded charts.
-fn pressing() -> Vec<Figure> {
+fn crowded_samples() -> Vec<Figure> {
     let mut all = samples::all();
     let mut crowded = samples::logarithmic();
     crowded.title =
@@ -104,7 +104,7 @@ fn pressing() -> Vec<Figure> {
 
 #[test]
 fn words_are_on_the_picture_without_overlaps() {
-    for figure in pressing() {
+    for figure in crowded_samples() {
         let size = tree(&svg(&figure).unwrap()).unwrap().size();
         let all = words(&figure);
         assert!(all.len() > 2, "{}", figure.name);
@@ -121,7 +121,7 @@ fn words_are_on_the_picture_without_overlaps() {
 
 #[test]
 fn no_words_cover_the_data() {
-    for figure in pressing() {
+    for figure in crowded_samples() {
         // Drawings and the cells of small maps contain words themselves.
         if matches!(figure.picture, Picture::Drawing(_)) || figure.name == "few-cells" {
             continue;

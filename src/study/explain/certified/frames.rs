@@ -34,7 +34,7 @@ impl JudgedPlan {
     }
 
     /// Returns the outcome in one word.
-    fn fate(&self) -> &'static str {
+    fn outcome_word(&self) -> &'static str {
         match (&self.outcome, self.decided()) {
             (Err(_), _) => "refused",
             (Ok(_), None) => "undecided",
@@ -51,7 +51,7 @@ struct PlanGroup<'j> {
 
 impl PlanGroup<'_> {
     fn plans_that(&self, fate: &str) -> usize {
-        self.plans.iter().filter(|it| it.fate() == fate).count()
+        self.plans.iter().filter(|it| it.outcome_word() == fate).count()
     }
 
     fn runs(&self, count: impl Fn(&PlanVerdict) -> usize) -> usize {
@@ -119,7 +119,7 @@ fn table(plans: &[JudgedPlan]) -> ResultFrame {
         .text("scene", |it| it.scene.clone())
         .text("quantity", |it| it.quantity)
         .text("asked", |it| it.asked)
-        .text("outcome", |it| it.fate())
+        .text("outcome", |it| it.outcome_word())
         .text("because", |it| because(it))
         .cell("runs", |it| count(it.decided().map(|it| it.runs)))
         .cell("within", |it| count(it.decided().map(|it| it.within)))

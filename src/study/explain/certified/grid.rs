@@ -9,7 +9,7 @@ use super::verdict::PlanVerdict;
 use crate::study::SettingChoice;
 use crate::study::trial::SampleSpan;
 use rayon::ThreadPoolBuilder;
-use stripmine_physics::averages::{AverageOutcome, of_independent};
+use stripmine_physics::averages::{AverageOutcome, mean_of_independent};
 use stripmine_physics::method::{ChoiceEffect, Prepared};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
@@ -79,11 +79,11 @@ impl<'g> ConfigurationGrid<'g> {
         let case = of.case;
         let all = SettingChoice::all(case.entry.axes);
         let (search, lists) = of.cheapest_search(&all, SEARCHES * seconds)?;
-        let is_of_search = |choice: &&SettingChoice| choice.agrees(&search, ChoiceEffect::Cost);
+        let is_of_search = |choice: &&SettingChoice| choice.agrees_on(&search, ChoiceEffect::Cost);
         let mut asked: Vec<(SettingChoice, Overrides, Option<f64>)> = vec![];
         for choice in all.iter().filter(is_of_search) {
             let longest = of.longest(choice);
-            let own = case.step().filter(|_| choice.agrees(&case.own, ChoiceEffect::Order));
+            let own = case.step().filter(|_| choice.agrees_on(&case.own, ChoiceEffect::Order));
             let steps: Vec<Option<f64>> = match longest {
                 Some(longest) => STEPS.map(|part| part * longest).into_iter().chain(own).map(Some).collect(),
                 None => vec![None],
@@ -139,7 +139,7 @@ impl<'g> ConfigurationGrid<'g> {
             (Some(own), Some(other)) => (own / other - 1.0).abs() < 1e-9,
             (own, other) => own.is_none() && other.is_none(),
         };
-        let has_own = |point: &GridPoint, decides: ChoiceEffect| point.choice.agrees(own, decides);
+        let has_own = |point: &GridPoint, decides: ChoiceEffect| point.choice.agrees_on(own, decides);
         let of_own = cheapest(&|point| {
             has_own(point, ChoiceEffect::Order)
                 && has_own(point, ChoiceEffect::Digits)
@@ -148,7 +148,7 @@ impl<'g> ConfigurationGrid<'g> {
         let in_f64 = own.with(&[("precision", "f64")]);
         let at_limit = cheapest(&|point| {
             has_own(point, ChoiceEffect::Order)
-                && point.choice.agrees(&in_f64, ChoiceEffect::Digits)
+                && point.choice.agrees_on(&in_f64, ChoiceEffect::Digits)
                 && is_near(point, self.limit)
         });
         let planned = self.plans[number].as_ref()?;
@@ -250,8 +250,9 @@ impl StartEnsemble<'_> {
         seconds: f64,
     ) -> Result<(SettingChoice, Option<f64>), String> {
         let own = &self.case.own;
-        let is_alike =
-            |it: &&SettingChoice| it.agrees(own, ChoiceEffect::Order) && it.agrees(own, ChoiceEffect::Digits);
+        let is_alike = |it: &&SettingChoice| {
+            it.agrees_on(own, ChoiceEffect::Order) && it.agrees_on(own, ChoiceEffect::Digits)
+        };
         let searches: Vec<&SettingChoice> = all.iter().filter(is_alike).collect();
         let each = seconds / searches.len() as f64;
         let mut timed: Vec<(&SettingChoice, f64)> = searches
@@ -298,12 +299,12 @@ impl StartEnsemble<'_> {
         let begun = self.trial.watch.now();
         let first = self.sample(&prepared, span)?;
         if !first.warnings.is_empty() {
-            return Err(first.warned());
+            return Err(first.warning_text());
         }
         let off = match (first.outcome, self.asking.whole) {
             (AverageOutcome::Kept { farthest, .. }, _) => [farthest, 0.0],
             (_, None) => {
-                let known = first.known().ok_or_else(|| first.without_mean())?;
+                let known = first.known().ok_or_else(|| first.missing_mean_reason())?;
                 [known.mean - reference.known.mean, known.bar.hypot(reference.known.bar)]
             }
             (_, Some(_)) => {
@@ -312,7 +313,7 @@ impl StartEnsemble<'_> {
                     let next = self.start(overrides, number + STARTS * means.len())?;
                     means.push(self.sample(&next, span)?.mean_over(WHOLE));
                 }
-                let [mean, bar] = of_independent(&means).ok_or("only one run finished")?;
+                let [mean, bar] = mean_of_independent(&means).ok_or("only one run finished")?;
                 [mean - reference.known.mean, bar.hypot(reference.known.bar)]
             }
         };
@@ -349,7 +350,7 @@ mod tests {
     #[test]
     fn costs_are_relative_to_the_best_configuration() {
         let case = StudyCase::load("dense-gas", &["particles.count=100".to_owned()], METHODS).unwrap();
-        let (watch, stop) = (Stopwatch::made(400.0), AtomicBool::new(false));
+        let (watch, stop) = (Stopwatch::with_synthetic_time(400.0), AtomicBool::new(false));
         let trial = TrialControl { watch: &watch, stop: &stop };
         let target = PlanTarget::of(&case, Some("pressure"), Some(Width::Percent(20.0))).unwrap();
         let plan = by_trials(&case, &target, 2.0, trial).unwrap();

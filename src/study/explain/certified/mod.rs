@@ -13,7 +13,7 @@ pub(crate) use frames::made;
 pub(crate) use scenes::{PlanCase, QUICK, SCENES};
 
 use super::recommended::RunPlan;
-use super::seen::{planned, seen};
+use super::seen::{measure_findings, plan_or_scene};
 use super::{PlanTarget, in_unit};
 use crate::results::{Journal, Progress, ProgressMeter};
 use crate::study::trial::{Stopwatch, TrialControl};
@@ -91,7 +91,7 @@ struct PlanAttempt {
 ///
 /// # Errors
 /// [`StudyError`] if a scene is invalid, or threads cannot be started.
-pub(crate) fn certified(
+pub(crate) fn judge_plans(
     asked: &[PlanCase],
     effort: PlanTestEffort,
     progress: Progress<'_>,
@@ -170,9 +170,9 @@ fn by_trials(
     seconds: f64,
     trial: TrialControl<'_>,
 ) -> Result<RunPlan, String> {
-    let found = seen(case, target, seconds, trial, (&|_| {}, &Journal::none()))
+    let found = measure_findings(case, target, seconds, trial, (&|_| {}, &Journal::none()))
         .map_err(|error| first_line(&error.to_string()))?;
-    planned(case, target, &found, "").map_err(|unreached| unreached.to_string())
+    plan_or_scene(case, target, &found, "").map_err(|unreached| unreached.to_string())
 }
 
 /// Carries out plans for the same mean.

@@ -83,7 +83,7 @@ impl StartEnsemble<'_> {
             for sample in more.map_err(|error| error.to_string())? {
                 let sample = sample?;
                 if !bears_warnings && !sample.warnings.is_empty() {
-                    return Err(format!("warning: {}", sample.warned()));
+                    return Err(format!("warning: {}", sample.warning_text()));
                 }
                 samples.push(sample);
             }
@@ -102,7 +102,7 @@ impl StartEnsemble<'_> {
             let is_whole_enough = self.asking.whole.is_none() || samples.len() >= FEWEST;
             match known {
                 Some(known) if is_whole_enough && (excess(&known) <= 1.0 || span <= 0.0) => return Ok(known),
-                None if span <= 0.0 => return Err(samples[0].without_mean()),
+                None if span <= 0.0 => return Err(samples[0].missing_mean_reason()),
                 _ => span = span.max(SCOUT * seconds),
             }
         }

@@ -68,10 +68,10 @@ impl StartEnsemble<'_> {
     pub(crate) fn sample(&self, prepared: &Prepared, span: SampleSpan) -> Result<TrialSample, String> {
         let observed = (self.case.entry.quantities, self.target.place);
         let sample = self.trial.sample(prepared, observed, span);
-        let sample = sample.map_err(|failure| first_line(&failure.what()))?;
+        let sample = sample.map_err(|failure| first_line(&failure.what_and_when()))?;
         match span {
             SampleSpan::Time(time, _) | SampleSpan::Planned(time, _) => {
-                sample.cut_off(time).map_or(Ok(sample), Err)
+                sample.early_end(time).map_or(Ok(sample), Err)
             }
             SampleSpan::Seconds(_) => Ok(sample),
         }
@@ -82,7 +82,7 @@ impl StartEnsemble<'_> {
         match sample.outcome {
             AverageOutcome::Kept { farthest, .. } => Ok(farthest),
             _ if self.asking.whole.is_some() => Ok(sample.mean_over(WHOLE)),
-            _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.without_mean()),
+            _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.missing_mean_reason()),
         }
     }
 

@@ -75,7 +75,7 @@ fn runs_and_plans_are_counted_once() {
 fn runs_and_reference_have_the_bath_temperature() {
     let sets = ["particles.count=200".to_owned()];
     let case = StudyCase::load("langevin-free", &sets, METHODS).unwrap();
-    let (watch, stop) = (Stopwatch::made(100.0), AtomicBool::new(false));
+    let (watch, stop) = (Stopwatch::with_synthetic_time(100.0), AtomicBool::new(false));
     let trial = TrialControl { watch: &watch, stop: &stop };
     let error = Width::Percent(6.0);
     let target = PlanTarget::of(&case, Some("temperature"), Some(error)).unwrap();

@@ -2,7 +2,7 @@
 
 use super::format::ForeignFormat;
 use crate::io::trajectory::TrajectoryError;
-use crate::number::counted;
+use crate::number::count_with_noun;
 use crate::quoted::{self, quoted};
 use std::fmt;
 use std::io;
@@ -291,7 +291,7 @@ fn listing(error: &XyzReadError) -> String {
     let file = quoted::path(error.file.as_ref());
     let mut lines: Vec<String> = error.mistakes.iter().map(|mistake| format!("{file}:{mistake}")).collect();
     if error.more > 0 {
-        lines.push(format!("{file}: {}", counted(error.more, "more mistake", "more mistakes")));
+        lines.push(format!("{file}: {}", count_with_noun(error.more, "more mistake", "more mistakes")));
     }
     lines.join("\n")
 }

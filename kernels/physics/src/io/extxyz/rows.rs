@@ -128,7 +128,7 @@ impl XyzRowLayout {
         let radius = row.positive(RADIUS)?;
         let mass = row.positive(self.either(MASS, MASSES))?;
         if moving == MOMENTA {
-            velocity = row.over(velocity, mass)?;
+            velocity = row.velocity_from_momentum(velocity, mass)?;
         }
         let omega = row.spin()?;
         Ok(Particle { id, kind, position, velocity, angle: 0.0, omega, radius, mass })
@@ -181,7 +181,7 @@ impl XyzRow<'_> {
     }
 
     /// Velocity from a momentum.
-    fn over(&self, momentum: [f64; 3], mass: f64) -> Result<[f64; 3], Mistake> {
+    fn velocity_from_momentum(&self, momentum: [f64; 3], mass: f64) -> Result<[f64; 3], Mistake> {
         let velocity = momentum.map(|p| p / mass);
         match velocity.iter().zip(self.fields(MOMENTA)).find(|(speed, _)| !speed.is_finite()) {
             None => Ok(velocity),

@@ -6,7 +6,9 @@
 
 use super::layout::{ENTRY, GsdNumber, HEADING, Heading, Index, IndexEntry, aligned, list_of};
 use crate::io::FileError;
-use crate::io::growing_file::{FileMark, GrowingFileError, created, is_as_long_as_written, reopened, synced};
+use crate::io::growing_file::{
+    FileMark, GrowingFileError, check_length_written, create_new_file, reopen_at_mark, sync_and_check,
+};
 use crc32fast::Hasher;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
@@ -43,7 +45,7 @@ impl GsdFile {
     /// If the path exists, or the system refuses to write it.
     pub(super) fn create(path: impl Into<PathBuf>, names: Vec<String>) -> Result<Self, FileError> {
         let path = path.into();
-        let created = created(&path)?;
+        let created = create_new_file(&path)?;
         let mut file = GsdFile::empty(path, created, names);
         let begun = file.begin();
         begun.map_err(FileError::at(&file.path, "writing"))?;
@@ -60,7 +62,7 @@ impl GsdFile {
         mark: FileMark,
     ) -> Result<Self, GrowingFileError> {
         let path = path.into();
-        let opened = reopened(&path, mark)?;
+        let opened = reopen_at_mark(&path, mark)?;
         let mut file = GsdFile::empty(path, opened, names);
         let is_whole = file.read_up_to(mark.bytes).map_err(FileError::at(&file.path, "reading"))?;
         let found = file.checksum.clone().finalize();
@@ -240,7 +242,7 @@ impl GsdFile {
     /// # Errors
     /// Errors of the file; also if another program has changed its length.
     pub(super) fn begin_frame(&mut self) -> io::Result<()> {
-        is_as_long_as_written(self.out.get_ref(), self.end)?;
+        check_length_written(self.out.get_ref(), self.end)?;
         if self.is_index_full() {
             self.grow_index()?;
         }
@@ -301,7 +303,7 @@ impl GsdFile {
     /// # Errors
     /// If the system refuses to write it, or the file has been removed, replaced or changed meanwhile.
     pub(super) fn sync(&mut self) -> Result<FileMark, FileError> {
-        synced(&self.path, self.out.get_ref(), self.end)?;
+        sync_and_check(&self.path, self.out.get_ref(), self.end)?;
         Ok(FileMark { bytes: self.end, checksum: self.checksum.clone().finalize() })
     }
 }

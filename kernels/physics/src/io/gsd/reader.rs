@@ -211,7 +211,7 @@ impl Chunks<'_> {
         Ok(Some(bytes.chunks_exact(size_of::<E>()).map(E::of).collect()))
     }
 
-    fn needed<E: GsdNumber>(
+    fn required_rows<E: GsdNumber>(
         &mut self,
         chunk: &'static str,
         rows: usize,
@@ -221,7 +221,7 @@ impl Chunks<'_> {
     }
 
     fn one<E: GsdNumber>(&mut self, chunk: &'static str) -> Result<E, LocatedGsdError> {
-        Ok(self.needed(chunk, 1, 1)?[0])
+        Ok(self.required_rows(chunk, 1, 1)?[0])
     }
 
     /// Reads finite numbers, greater than 0 if required.
@@ -231,7 +231,7 @@ impl Chunks<'_> {
         (rows, columns): (usize, usize),
         is_positive: bool,
     ) -> Result<Vec<f64>, LocatedGsdError> {
-        let numbers = self.needed::<f64>(chunk, rows, columns)?;
+        let numbers = self.required_rows::<f64>(chunk, rows, columns)?;
         let fits = |number: f64| number.is_finite() && (number > 0.0 || !is_positive);
         let Some(at) = numbers.iter().position(|&number| !fits(number)) else { return Ok(numbers) };
         let expected = if is_positive { "a finite number greater than 0" } else { "a finite number" };
@@ -241,7 +241,7 @@ impl Chunks<'_> {
 
     /// Sides of the box; infinite without a box.
     fn sides(&mut self) -> Result<[f64; 2], LocatedGsdError> {
-        let sides = self.needed::<f64>(SIDES, 2, 1)?;
+        let sides = self.required_rows::<f64>(SIDES, 2, 1)?;
         let Some(row) = sides.iter().position(|side| side.is_nan() || *side <= 0.0) else {
             return Ok([sides[0], sides[1]]);
         };
@@ -252,10 +252,10 @@ impl Chunks<'_> {
     fn frame(mut self) -> Result<ParticleFrame, LocatedGsdError> {
         let count = self.one::<u32>(COUNT)? as usize;
         let (sides, corner) = (self.sides()?, self.numbers(CORNER, (2, 1), false)?);
-        let periodic = self.needed::<u8>(PERIODIC, 2, 1)?;
+        let periodic = self.required_rows::<u8>(PERIODIC, 2, 1)?;
         let axes = if sides.iter().all(|side| side.is_finite()) { 2 } else { 3 };
-        let kinds = self.needed::<u32>(TYPE, count, 1)?;
-        let ids = self.needed::<u32>(ID, count, 1)?;
+        let kinds = self.required_rows::<u32>(TYPE, count, 1)?;
+        let ids = self.required_rows::<u32>(ID, count, 1)?;
         let [radius, mass] =
             [self.numbers(RADIUS, (count, 1), true)?, self.numbers(EXACT_MASS, (count, 1), true)?];
         let position = self.numbers(EXACT_POSITION, (count, axes), false)?;

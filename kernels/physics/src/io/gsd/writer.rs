@@ -53,7 +53,7 @@ impl FirstFrame {
         let particles = frame.particles.all();
         FirstFrame {
             ids: ids(particles).collect(),
-            turns: turns(particles),
+            turns: is_any_rotating(particles),
             sides: SchemaBox::of(frame).sides,
         }
     }
@@ -97,7 +97,7 @@ impl Sink for GsdWriter {
         let first = self.first.as_ref();
         let is_first = first.is_none();
         let is_same = first.is_some_and(|first| first.ids.iter().copied().eq(ids(particles)));
-        let is_still = is_same && first.is_some_and(|first| !first.turns) && !turns(particles);
+        let is_still = is_same && first.is_some_and(|first| !first.turns) && !is_any_rotating(particles);
         let has_sides = first.is_some_and(|first| first.sides == sides);
         let number = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it)]);
         let single = |of: fn(&Particle) -> f64| particles.iter().map(move |it| [of(it) as f32]);
@@ -141,7 +141,7 @@ impl Sink for GsdWriter {
             file.add(EXACT_MASS, number(|it| it.mass))?;
         }
         if is_plane {
-            file.add(EXACT_POSITION, particles.iter().map(Particle::place))?;
+            file.add(EXACT_POSITION, particles.iter().map(Particle::planar_position))?;
             file.add(EXACT_VELOCITY, particles.iter().map(Particle::planar_velocity))?;
         } else {
             file.add(EXACT_POSITION, particles.iter().map(|it| it.position))?;
@@ -170,7 +170,7 @@ fn ids(particles: &[Particle]) -> impl Iterator<Item = u32> {
     particles.iter().map(|it| it.id)
 }
 
-fn turns(particles: &[Particle]) -> bool {
+fn is_any_rotating(particles: &[Particle]) -> bool {
     particles.iter().any(|it| it.angle != 0.0 || it.omega != 0.0)
 }
 
@@ -213,13 +213,13 @@ impl SchemaBox {
             };
         }
         let coordinates = particles.all().iter().flat_map(|it| it.position);
-        let side = above(2.0 * coordinates.fold(0.5, |most: f64, x| most.max(x.abs()))) as f32;
+        let side = power_of_two_above(2.0 * coordinates.fold(0.5, |most: f64, x| most.max(x.abs()))) as f32;
         SchemaBox { sides: [side, side, side, 0.0, 0.0, 0.0], centre: [0.0; 3], is_plane: false }
     }
 }
 
 /// Next larger power of two of a number from 1 on.
-fn above(number: f64) -> f64 {
+fn power_of_two_above(number: f64) -> f64 {
     const FRACTION: u64 = (1 << 52) - 1;
     2.0 * f64::from_bits(number.to_bits() & !FRACTION)
 }

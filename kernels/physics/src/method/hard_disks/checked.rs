@@ -2,7 +2,7 @@
 
 use super::compress::compress;
 use super::fast;
-use super::idle::never;
+use super::idle::is_idle_forever;
 use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
 use super::reference::choice::{candidates, mask};
@@ -16,7 +16,7 @@ use crate::particles::{Particle, Particles};
 use crate::scene::{
     GENERATE, MistakeKind, RADIUS, ReadBinding, SceneError, SceneErrors, SceneValues, WallMotion, Warning,
 };
-use crate::start::{StatedStart, make, noise_seed, outside, overlaps};
+use crate::start::{StatedStart, create_initial_state, noise_seed, outside, overlaps};
 use std::sync::Arc;
 use stripmine_kernels::flight::FlyingDisc;
 use stripmine_kernels::mask::Mask;
@@ -41,7 +41,7 @@ pub(super) struct CheckedHardDisks {
 pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
     let (mut scene, mut read) = (HardDiskScene::default(), ReadBinding::new(&values));
     scene.bind(&mut read);
-    read.done()?;
+    read.finish_reading()?;
     let stated = StatedStart {
         values: &values,
         domain: &scene.domain,
@@ -49,10 +49,10 @@ pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
         walls: WallMotion::Fixed,
         compress,
     };
-    let made = make(&stated)?;
+    let made = create_initial_state(&stated)?;
     let (domain, mut particles, mut warnings) = (made.domain, made.particles, made.warnings);
     let squeeze = StartOverlaps::of(&domain, &particles);
-    warnings.extend(squeeze.undone(&values, &scene, &mut particles));
+    warnings.extend(squeeze.shrink_radii(&values, &scene, &mut particles));
     let mut errors = outside(&stated, &domain, &particles);
     if squeeze.is_deep() {
         let found = overlaps(&stated, &domain, &particles, ROUNDING, "hard discs do not overlap");
@@ -66,19 +66,19 @@ pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
         }));
     }
     errors.extend(beyond_sides(&values, &domain, &particles));
-    errors.extend(squeezed(&values, &scene, &domain, &particles));
+    errors.extend(high_floor_error(&values, &scene, &domain, &particles));
     errors.extend(fixed(&values, &particles));
     let mut choices = vec![];
     let mask = match particles.radii() {
-        Some(radii) => way_of(&values, &mut scene, &domain, radii, &particles, &mut choices),
+        Some(radii) => chosen_engine_mask(&values, &mut scene, &domain, radii, &particles, &mut choices),
         None => Err(values.spot(&RADIUS).error(MistakeKind::Geometry, "there is nothing to simulate")),
     };
     let mask = mask.unwrap_or_else(|error| {
         errors.push(error);
         None
     });
-    SceneErrors::none_of(errors)?;
-    SceneErrors::none_of(without_events(&values, &scene, domain, &particles).into_iter().collect())?;
+    SceneErrors::ok_if_empty(errors)?;
+    SceneErrors::ok_if_empty(idle_run_error(&values, &scene, domain, &particles).into_iter().collect())?;
     if let Some(thermal) = &mut scene.law.thermal {
         // Written into the scene if the start has no seed.
         if scene.start.seed().is_none() {
@@ -88,7 +88,7 @@ pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
     }
     let particles = Arc::new(particles);
     let checked = CheckedHardDisks { scene, domain, particles, mask, warnings, choices };
-    SceneErrors::none_of(checked.endless(&values).into_iter().collect())?;
+    SceneErrors::ok_if_empty(checked.endless(&values).into_iter().collect())?;
     Ok(checked.prepared())
 }
 
@@ -104,7 +104,7 @@ fn beyond_sides(values: &SceneValues, domain: &Domain, particles: &Particles) ->
         })
     };
     let first = particles.all().iter().find(beyond)?;
-    let [x, y] = first.place();
+    let [x, y] = first.planar_position();
     let message = format!(
         "disc {} at ({x}, {y}) with radius {} reaches beyond a side that is not periodic",
         first.id, first.radius
@@ -114,7 +114,7 @@ fn beyond_sides(values: &SceneValues, domain: &Domain, particles: &Particles) ->
 }
 
 /// Error for a floor that rises so high that a disc does not fit below the ceiling.
-fn squeezed(
+fn high_floor_error(
     values: &SceneValues,
     scene: &HardDiskScene,
     domain: &Domain,
@@ -146,13 +146,13 @@ fn fixed(values: &SceneValues, particles: &Particles) -> Option<SceneError> {
 }
 
 /// Error for a run of events in a scene that can have none.
-fn without_events(
+fn idle_run_error(
     values: &SceneValues,
     scene: &HardDiskScene,
     domain: Domain,
     particles: &Particles,
 ) -> Option<SceneError> {
-    let is_idle = || never(&scene.arena(domain), &discs(&domain, particles).0);
+    let is_idle = || is_idle_forever(&scene.arena(domain), &discs(&domain, particles).0);
     (matches!(scene.run.until, Until::Events(_)) && is_idle()).then(|| {
         let message = "nothing will ever happen: no disc meets another disc or a side";
         let error = values.spot(&EVENTS).error(MistakeKind::Contradiction, message);
@@ -166,7 +166,7 @@ fn discs(domain: &Domain, particles: &Particles) -> (Vec<FlyingDisc>, Vec<usize>
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by_key(|&place| all[place].id);
     let disc = |&place: &usize| FlyingDisc {
-        position: domain.wrapped(all[place].place()),
+        position: domain.wrapped(all[place].planar_position()),
         velocity: all[place].planar_velocity(),
         time: 0.0,
         radius: all[place].radius,
@@ -177,7 +177,7 @@ fn discs(domain: &Domain, particles: &Particles) -> (Vec<FlyingDisc>, Vec<usize>
 }
 
 /// Selects the engine. Returns the mask of the reference engine, or none for the fast engine.
-fn way_of(
+fn chosen_engine_mask(
     values: &SceneValues,
     scene: &mut HardDiskScene,
     domain: &Domain,
@@ -197,7 +197,7 @@ fn way_of(
             choices.push(format!("machine.engine = \"reference\": {small}"));
             EngineChoice::Reference
         }
-        (EngineChoice::Auto, _) if values.gives(&MASK) && scene.mask != MASKS[0] => {
+        (EngineChoice::Auto, _) if values.is_given(&MASK) && scene.mask != MASKS[0] => {
             choices.push("machine.engine = \"reference\": a mask is given".to_owned());
             EngineChoice::Reference
         }
@@ -208,11 +208,11 @@ fn way_of(
     if way == EngineChoice::Fast {
         return Ok(None);
     }
-    serving(values, scene, domain, radii, particles.len(), choices).map(Some)
+    chosen_mask(values, scene, domain, radii, particles.len(), choices).map(Some)
 }
 
 /// Returns the requested mask, or the cheapest one.
-fn serving(
+fn chosen_mask(
     values: &SceneValues,
     scene: &mut HardDiskScene,
     domain: &Domain,

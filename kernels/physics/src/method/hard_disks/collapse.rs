@@ -94,7 +94,7 @@ impl CollapseMonitor {
 
     /// Registers an event. `crossing` returns the current time in which a typical disc flies through a radius.
     #[inline]
-    pub(crate) fn see(
+    pub(crate) fn register_event(
         &mut self,
         happened: &ExecutedEvent,
         crossing: impl FnOnce() -> f64,
@@ -140,22 +140,22 @@ mod tests {
     }
 
     /// Feeds events `apart` in time, of `discs` discs in turn. Returns the number of events until detection, and the finding.
-    fn found(fall: f64, apart: f64, discs: u32) -> Option<(u64, bool)> {
+    fn events_until_detection(fall: f64, apart: f64, discs: u32) -> Option<(u64, bool)> {
         let mut watch = CollapseMonitor::new(1.0, fall, 100);
         (1..=20_000).find_map(|event| {
             let happened = at(event as f64 * apart, event as u32 % discs, EventPartner::Wall(1));
-            watch.see(&happened, || 1.0).map(|endless| (event, endless.rests))
+            watch.register_event(&happened, || 1.0).map(|endless| (event, endless.rests))
         })
     }
 
     #[test]
     fn rest_differs_from_collapse_and_activity() {
-        assert_eq!(found(1.0, 1e-8, 1), Some((4096, true)));
+        assert_eq!(events_until_detection(1.0, 1e-8, 1), Some((4096, true)));
         // Two discs in step: each bounces half as often.
-        assert_eq!(found(1.0, 1e-8, 2), Some((4096, true)));
-        assert_eq!(found(1.0, 1e-8, 11), None);
-        assert_eq!(found(1.0, 2e-7, 1), None);
-        assert_eq!(found(f64::INFINITY, 1e-8, 1), None);
-        assert_eq!(found(1.0, 1e-16, 1), Some((256, false)));
+        assert_eq!(events_until_detection(1.0, 1e-8, 2), Some((4096, true)));
+        assert_eq!(events_until_detection(1.0, 1e-8, 11), None);
+        assert_eq!(events_until_detection(1.0, 2e-7, 1), None);
+        assert_eq!(events_until_detection(f64::INFINITY, 1e-8, 1), None);
+        assert_eq!(events_until_detection(1.0, 1e-16, 1), Some((256, false)));
     }
 }

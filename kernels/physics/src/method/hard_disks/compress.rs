@@ -45,7 +45,7 @@ pub fn compress(
     let mut discs: Vec<FlyingDisc> = grains
         .iter()
         .map(|grain| FlyingDisc {
-            position: domain.wrapped(grain.place()),
+            position: domain.wrapped(grain.planar_position()),
             velocity: normals(seed, RandomPurpose::Placement, grain.id, 2).map(|v| mean * v),
             time: 0.0,
             radius: grain.radius * (1.0 + BEYOND),
@@ -76,7 +76,7 @@ pub fn compress(
         scale = if time == end { 1.0 } else { scale + rate * time };
         for (number, disc) in discs.iter_mut().enumerate() {
             let after = engine.disc(number as u32);
-            (disc.position, disc.velocity) = (growing.place(after, time), after.velocity);
+            (disc.position, disc.velocity) = (growing.position_at(after, time), after.velocity);
         }
         let square: f64 = discs.iter().map(|disc| disc.speed().powi(2)).sum();
         let cooled = mean / (square / (2.0 * count as f64)).sqrt();
@@ -97,7 +97,7 @@ pub fn compress(
 mod tests {
     use super::*;
     use crate::particles::ParticleKind;
-    use crate::placement::{RandomPlacement, Second, random};
+    use crate::placement::{RandomPlacement, Second, place_randomly};
 
     fn start(domain: Domain, packing: f64, spread: f64, scale: f64) -> Vec<Particle> {
         let mean = 0.5;
@@ -115,7 +115,7 @@ mod tests {
             mass: 1.0,
             seed: 3,
         };
-        let mut grains = random(&filling).unwrap();
+        let mut grains = place_randomly(&filling).unwrap();
         grains.iter_mut().for_each(|grain| grain.radius /= scale);
         assert!(grains.iter().all(|grain| grain.kind == ParticleKind::Grain));
         grains
@@ -132,7 +132,7 @@ mod tests {
             compress(&domain, &mut grains, 0.6, 3).unwrap();
             for (number, a) in grains.iter().enumerate() {
                 for b in &grains[number + 1..] {
-                    assert!(domain.distance(a.place(), b.place()) >= a.radius + b.radius);
+                    assert!(domain.distance(a.planar_position(), b.planar_position()) >= a.radius + b.radius);
                 }
                 for axis in (0..2).filter(|&axis| !periodic[axis]) {
                     let along = a.position[axis];

@@ -109,7 +109,7 @@ impl Arena {
     }
 
     /// Position of a disc at a time, inside the box along periodic sides (length).
-    pub(crate) fn place(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
+    pub(crate) fn position_at(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
     }
 
@@ -128,7 +128,7 @@ impl Arena {
     /// Potential energy of a disc at a time (energy), zero at the lower corner of the box.
     pub(crate) fn potential(&self, disc: &FlyingDisc, time: f64) -> f64 {
         let Some(gravity) = self.space.gravity() else { return 0.0 };
-        let place = self.place(disc, time);
+        let place = self.position_at(disc, time);
         let [along_x, along_y] = [0, 1].map(|axis| gravity[axis] * (place[axis] - self.domain.origin[axis]));
         -disc.mass * (along_x + along_y)
     }
@@ -144,7 +144,7 @@ impl Arena {
     /// Advances a disc to the time of its event.
     #[inline]
     fn advance(&self, disc: &mut FlyingDisc, time: f64) {
-        let (position, velocity) = (self.place(disc, time), disc.velocity_at(&self.space, time));
+        let (position, velocity) = (self.position_at(disc, time), disc.velocity_at(&self.space, time));
         (disc.position, disc.velocity, disc.time) = (position, velocity, time);
         disc.events += 1;
     }
@@ -269,7 +269,7 @@ impl ThermalWall {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stripmine_kernels::flight::meeting;
+    use stripmine_kernels::flight::collision_time;
 
     fn disc(position: [f64; 2], velocity: [f64; 2]) -> FlyingDisc {
         FlyingDisc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 }
@@ -294,7 +294,7 @@ mod tests {
         };
         for restitution in [1.0, 0.5] {
             let arena = periodic(CollisionLaw { restitution, ..CollisionLaw::ELASTIC });
-            let when = |[a, b]: &[FlyingDisc; 2]| meeting(&arena.space, a, b, 0.0, f64::INFINITY);
+            let when = |[a, b]: &[FlyingDisc; 2]| collision_time(&arena.space, a, b, 0.0, f64::INFINITY);
             let mut after = start;
             let time = when(&start);
             let [a, b] = &mut after;

@@ -18,7 +18,7 @@ impl CrossingCounter {
     }
 
     /// Counts the crossings of a disc up to its event, after which its state is `now`.
-    pub(super) fn see(&mut self, arena: &Arena, number: u32, now: &FlyingDisc) {
+    pub(super) fn register_crossings(&mut self, arena: &Arena, number: u32, now: &FlyingDisc) {
         let before = &mut self.before[number as usize];
         let beyond = arena.domain.periods(before.at(&arena.space, now.time));
         if beyond != [0.0; 2] {
@@ -33,7 +33,7 @@ impl CrossingCounter {
     }
 
     /// True if there is a periodic side and all are followed.
-    pub(super) fn follows(&self, arena: &Arena) -> bool {
+    pub(super) fn is_following_all_sides(&self, arena: &Arena) -> bool {
         self.crossings.follows(&arena.domain)
     }
 
@@ -53,7 +53,7 @@ impl CrossingCounter {
     ) -> Result<(), String> {
         let mut columns: Vec<(String, CheckpointColumn)> = Crossings::among(columns).cloned().collect();
         Crossings::begin_in(&mut columns, discs.len());
-        self.crossings.take_up(&columns)?;
+        self.crossings.restore_counts(&columns)?;
         self.before.copy_from_slice(discs);
         Ok(())
     }

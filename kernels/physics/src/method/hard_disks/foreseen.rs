@@ -23,12 +23,12 @@ const COLLISION: [(f64, [f64; 2]); 5] = [
 ];
 
 /// Nanoseconds per collision in a scene.
-pub(super) fn nanoseconds_of_a_collision(checked: &CheckedHardDisks) -> f64 {
-    of_a_collision(checked.packing_fraction(), checked.scene.engine)
+pub(super) fn nanoseconds_per_collision(checked: &CheckedHardDisks) -> f64 {
+    interpolated_nanoseconds(checked.packing_fraction(), checked.scene.engine)
 }
 
 /// Nanoseconds per collision at a packing fraction: interpolated within the table, constant beyond its ends.
-fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
+fn interpolated_nanoseconds(fraction: f64, engine: EngineChoice) -> f64 {
     let way = usize::from(engine == EngineChoice::Reference);
     let [(first, lowest), .., (_, highest)] = COLLISION;
     let between = COLLISION.windows(2).find(|ends| (ends[0].0..=ends[1].0).contains(&fraction));
@@ -42,7 +42,7 @@ fn of_a_collision(fraction: f64, engine: EngineChoice) -> f64 {
 }
 
 /// Enskog's collision rate per disc, each collision counted once for the pair, at a thermal speed √(kT/m).
-pub(super) fn enskog(checked: &CheckedHardDisks, speed: f64) -> f64 {
+pub(super) fn enskog_collision_rate(checked: &CheckedHardDisks, speed: f64) -> f64 {
     let count = checked.particles.len() as f64;
     let [x, y] = checked.domain.lengths();
     let diameter = 2.0 * mean(checked, |disc| disc.radius);
@@ -83,7 +83,7 @@ fn rate(checked: &CheckedHardDisks) -> f64 {
         + scene.law.thermal.map_or(0.0, |thermal| heated(thermal.temperature))
         + scene.law.floor.map_or(0.0, |floor| TAU * floor.amplitude * floor.frequency);
     let at_sides = (0..2).filter(|&axis| !domain.is_periodic(axis)).map(|axis| speed / domain.length(axis));
-    (enskog(checked, speed) + at_sides.sum::<f64>()) * checked.particles.len() as f64
+    (enskog_collision_rate(checked, speed) + at_sides.sum::<f64>()) * checked.particles.len() as f64
 }
 
 impl CheckedHardDisks {
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn collision_costs_are_interpolated() {
         for (fraction, cost) in [(0.0, 1310.0), (0.2, 1050.0), (0.6, 433.333), (0.8, 380.0)] {
-            let found = of_a_collision(fraction, EngineChoice::Fast);
+            let found = interpolated_nanoseconds(fraction, EngineChoice::Fast);
             assert!((found - cost).abs() < 1e-2, "{fraction}: {found}");
         }
     }

@@ -9,7 +9,7 @@ const MOST: usize = 4096;
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
 /// True if certainly no disc will ever meet another disc or a side. False if an event is possible or the proof fails.
-pub(super) fn never(arena: &Arena, discs: &[FlyingDisc]) -> bool {
+pub(super) fn is_idle_forever(arena: &Arena, discs: &[FlyingDisc]) -> bool {
     if discs.iter().any(|disc| arena.wall(disc).0 < f64::INFINITY) {
         return false;
     }
@@ -18,12 +18,13 @@ pub(super) fn never(arena: &Arena, discs: &[FlyingDisc]) -> bool {
         return true;
     }
     let mut others = discs.iter().enumerate();
-    discs.len() <= MOST && others.all(|(i, a)| discs[..i].iter().all(|b| pass(arena, a, b)))
+    discs.len() <= MOST
+        && others.all(|(i, a)| discs[..i].iter().all(|b| is_collision_impossible(arena, a, b)))
 }
 
 /// True if two discs that fly straight along periodic sides miss each other and all images. Relative to one disc, the images of the
 /// other fly on parallel lines. The distance of these lines is the greatest common measure of the sides' components across the motion.
-fn pass(arena: &Arena, a: &FlyingDisc, b: &FlyingDisc) -> bool {
+fn is_collision_impossible(arena: &Arena, a: &FlyingDisc, b: &FlyingDisc) -> bool {
     let [u, v] = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
     if [u, v] == [0.0; 2] {
         return true;
@@ -82,11 +83,11 @@ mod tests {
         ] {
             let domain = Domain::planar([0.0; 2], [10.0; 2], periodic);
             let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
-            assert_eq!(never(&arena, &[here, other]), is_never, "{other:?}");
-            assert!(never(&arena, &[disc([5.0; 2], [1.0, 0.0])]));
+            assert_eq!(is_idle_forever(&arena, &[here, other]), is_never, "{other:?}");
+            assert!(is_idle_forever(&arena, &[disc([5.0; 2], [1.0, 0.0])]));
         }
         let falling =
             Arena::new(Domain::planar([0.0; 2], [10.0; 2], closed), [0.0, -1.0], CollisionLaw::ELASTIC);
-        assert!(!never(&falling, &[here]));
+        assert!(!is_idle_forever(&falling, &[here]));
     }
 }

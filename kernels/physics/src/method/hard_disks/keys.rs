@@ -7,7 +7,8 @@ use crate::scene::NumberRange::{AtMost, NonNegative, Positive};
 use crate::scene::keys::define_keys;
 use crate::scene::{
     DISC_RIVALS, DISCS, ExclusiveKeys, GRAVITY, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT,
-    PERIODIC, PLANAR_DOMAIN, SUMMED, SceneError, SceneValues, TARGETED, Use, Vocabulary, disagreements,
+    PERIODIC, PLANAR_DOMAIN, SUMMED, SceneError, SceneValues, TARGETED, Use, Vocabulary,
+    start_inconsistencies,
 };
 use crate::words::Words;
 
@@ -100,7 +101,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             ("machine.precision", "hard discs are always in double precision"),
         ],
     },
-    rules: &[disagreements, own_rules],
+    rules: &[start_inconsistencies, own_rules],
     presets: super::presets::PRESETS,
     renamed: &[],
 };

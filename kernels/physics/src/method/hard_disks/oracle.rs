@@ -8,19 +8,19 @@ use super::reference;
 use crate::domain::{BoxSide, Domain};
 use rand::RngExt;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::flight::{FlyingDisc, meeting};
+use stripmine_kernels::flight::{FlyingDisc, collision_time};
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 
 /// Executes the next event, found among all pairs and walls.
-fn naive(arena: &Arena, discs: &mut [FlyingDisc], now: f64) -> ExecutedEvent {
+fn brute_force_event(arena: &Arena, discs: &mut [FlyingDisc], now: f64) -> ExecutedEvent {
     let count = discs.len() as u32;
     let mut next = (f64::INFINITY, 0, EventPartner::Wall(0));
     for a in 0..count {
         let (time, axis) = arena.wall(&discs[a as usize]);
         let meetings = (0..count).filter(|&b| b != a).map(|b| {
             let [one, other] = [a, b].map(|disc| &discs[disc as usize]);
-            (meeting(&arena.space, one, other, now, f64::INFINITY), EventPartner::Disc(b))
+            (collision_time(&arena.space, one, other, now, f64::INFINITY), EventPartner::Disc(b))
         });
         let all = meetings.chain([(time, EventPartner::Wall(axis as u8))]);
         for (time, with) in all {
@@ -82,11 +82,11 @@ fn engines(arena: Arena, discs: &[FlyingDisc]) -> Vec<(String, Box<dyn EventEngi
 }
 
 /// Compares all engines with the oracle: every event, and every disc at the end. Returns the number of fast engines.
-fn hold(arena: Arena, discs: &[FlyingDisc], events: usize) -> usize {
+fn compare_with_oracle(arena: Arena, discs: &[FlyingDisc], events: usize) -> usize {
     let (mut oracle, mut now) = (discs.to_vec(), 0.0);
     let events: Vec<ExecutedEvent> = (0..events)
         .map(|_| {
-            let event = naive(&arena, &mut oracle, now);
+            let event = brute_force_event(&arena, &mut oracle, now);
             now = event.time;
             event
         })
@@ -117,7 +117,7 @@ fn engines_match_the_oracle() {
                 let gravity = if periodic[1] { [0.0; 2] } else { [0.0, -0.3] };
                 for gravity in [[0.0; 2], gravity] {
                     let discs = random(&domain, count, spread, seed as u64);
-                    fast += hold(Arena::new(domain, gravity, law), &discs, 500);
+                    fast += compare_with_oracle(Arena::new(domain, gravity, law), &discs, 500);
                 }
             }
         }
@@ -138,7 +138,7 @@ fn engines_match_above_a_vibrating_floor() {
     };
     for domain in [open, Domain::planar([0.0; 2], [14.0, 16.0], [true, false])] {
         let discs = random(&domain, 50, 0.2, 9);
-        assert!(hold(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
+        assert!(compare_with_oracle(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
     }
 }
 
@@ -149,7 +149,7 @@ fn engines_match_above_a_thermal_floor() {
     let thermal = ThermalWall { side: (1, false), temperature: 2.0, seed: 4 };
     let law = CollisionLaw { restitution: 0.95, thermal: Some(thermal), ..CollisionLaw::ELASTIC };
     let discs = random(&domain, 60, 0.2, 9);
-    assert!(hold(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
+    assert!(compare_with_oracle(Arena::new(domain, [0.0, -0.5], law), &discs, 3_000) > 0);
 }
 
 /// Discs on a square lattice with velocities along it collide pairwise at equal times, again and again.
@@ -166,7 +166,7 @@ fn simultaneous_events_are_ordered_by_number() {
     };
     // Shuffled, so that the order of the numbers differs from that of the positions.
     let discs: Vec<FlyingDisc> = (0..36).map(|number| disc(number * 23 % 36)).collect();
-    assert!(hold(Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC), &discs, 300) > 0);
+    assert!(compare_with_oracle(Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC), &discs, 300) > 0);
 }
 
 /// 10⁵ collisions of 200 discs: energy and momentum are conserved to rounding, no discs overlap, and both engines agree to the end.
@@ -194,7 +194,7 @@ fn engines_conserve_energy_and_momentum() {
     assert!((energy(&after) / before[0] - 1.0).abs() < 1e-12 && (momentum(&after) - before[1]).abs() < 1e-11);
     for (number, a) in after.iter().enumerate() {
         for b in &after[number + 1..] {
-            let apart = domain.distance(arena.place(a, time), arena.place(b, time));
+            let apart = domain.distance(arena.position_at(a, time), arena.position_at(b, time));
             assert!(apart > (a.radius + b.radius) * (1.0 - 1e-12), "{apart}");
         }
     }

@@ -2,12 +2,12 @@
 
 use super::checked::CheckedHardDisks;
 use super::collision_log::COLUMNS;
-use super::foreseen::{enskog, nanoseconds_of_a_collision, thermal_speed};
+use super::foreseen::{enskog_collision_rate, nanoseconds_per_collision, thermal_speed};
 use super::reference::grid::ExclusiveGridSize;
 use super::simulation::{HardDiskSimulation, RecordOptions};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
-use crate::method::refuse_several_ranks;
+use crate::method::reject_several_ranks;
 use crate::method::{Fact, PhysicsFailure, Prepared, Simulation, StartPurpose, Startable};
 use crate::number::significant;
 use crate::particles::{Particle, ParticleKind, Particles};
@@ -138,7 +138,7 @@ impl Startable for CheckedHardDisks {
     }
 
     fn work(&self) -> f64 {
-        nanoseconds_of_a_collision(self) * enskog(self, thermal_speed(self))
+        nanoseconds_per_collision(self) * enskog_collision_rate(self, thermal_speed(self))
     }
 
     fn has_open_top(&self) -> bool {
@@ -150,7 +150,7 @@ impl Startable for CheckedHardDisks {
     }
 
     fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
-        refuse_several_ranks("the events of hard discs are executed in sequence, wherever they occur")?;
+        reject_several_ranks("the events of hard discs are executed in sequence, wherever they occur")?;
         let is_run = purpose == StartPurpose::Run;
         let observed = RecordOptions {
             logs: is_run && self.scene.collision_log,

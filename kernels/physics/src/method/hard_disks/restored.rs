@@ -16,7 +16,7 @@ const MOST_ENERGY: f64 = 1e4;
 ///
 /// # Errors
 /// A message that names the first violation.
-pub(super) fn sound(
+pub(super) fn check_restored_discs(
     arena: &Arena,
     start: &Particles,
     discs: &[FlyingDisc],
@@ -29,7 +29,7 @@ pub(super) fn sound(
             disc.time
         ));
     }
-    let places: Vec<[f64; 2]> = discs.iter().map(|disc| arena.place(disc, now)).collect();
+    let places: Vec<[f64; 2]> = discs.iter().map(|disc| arena.position_at(disc, now)).collect();
     for (disc, place) in discs.iter().zip(&places) {
         if !is_inside(arena, disc, disc.position) || !is_inside(arena, disc, *place) {
             return Err(format!("a disc at {place:?} is outside the box"));
@@ -38,20 +38,20 @@ pub(super) fn sound(
     let kinetic: f64 = discs.iter().map(|disc| 0.5 * disc.mass * disc.speed().powi(2)).sum();
     // Only a floor adds energy with every event; a thermal side re-emits at its own temperature.
     let given = if arena.law.floor.is_some() { 1.0 + clock.events as f64 } else { 1.0 };
-    let most = MOST_ENERGY * given * offered(arena, start);
+    let most = MOST_ENERGY * given * available_energy(arena, start);
     if kinetic > most || kinetic.is_nan() {
         return Err(format!(
             "the discs have the kinetic energy {kinetic:?}, but the scene can give at most {most:?}"
         ));
     }
     let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-    let near = NeighbourSearch::among(arena.domain, places.iter().copied(), 2.0 * largest);
+    let near = NeighbourSearch::over_positions(arena.domain, places.iter().copied(), 2.0 * largest);
     for (number, (disc, place)) in (0u32..).zip(discs.iter().zip(&places)) {
         let overlaps = |(other, there): (u32, [f64; 2])| {
             let apart = disc.radius + discs[other as usize].radius;
             other > number && arena.domain.distance(*place, there) < (1.0 - ROUNDING) * apart
         };
-        if near.of(*place).any(overlaps) {
+        if near.candidates_near(*place).any(overlaps) {
             return Err(format!("a disc at {place:?} overlaps another one"));
         }
     }
@@ -72,7 +72,7 @@ fn is_inside(arena: &Arena, disc: &FlyingDisc, place: [f64; 2]) -> bool {
 }
 
 /// Energy available to the discs: at the start, by falling, and from a side in one event (energy).
-fn offered(arena: &Arena, start: &Particles) -> f64 {
+fn available_energy(arena: &Arena, start: &Particles) -> f64 {
     let gravity = arena.space.gravity().unwrap_or_default();
     let thermal = arena.law.thermal.map_or(0.0, |thermal| thermal.temperature);
     let floor =

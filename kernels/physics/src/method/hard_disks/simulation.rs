@@ -8,15 +8,15 @@ use super::event::Arena;
 use super::failures::{culprit, failure};
 use super::fast::Fast;
 use super::followed::CrossingCounter;
-use super::idle::never;
+use super::idle::is_idle_forever;
 use super::quantities::{HardDiskObservation, OBSERVABLES};
 use super::reference;
-use super::restored::sound;
+use super::restored::check_restored_discs;
 use super::sums::{CollisionTotals, IntervalMark, IntervalMeans, TotalMotion};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::observed::values;
 use crate::method::{Clock, Culprit, PerParticle, PhysicsFailure, RunWarning, Simulation, Snapshot, Until};
-use crate::number::{counted, significant};
+use crate::number::{count_with_noun, significant};
 use crate::observe::relative_energy_error;
 use crate::particles::{GrainStates, Particles, in_space};
 use serde_json::{Map, Value, json};
@@ -128,13 +128,13 @@ impl HardDiskSimulation {
         (0..self.engine.count() as u32).map(|number| self.engine.disc(number))
     }
 
-    fn count(&mut self, happened: &ExecutedEvent) {
+    fn record_event(&mut self, happened: &ExecutedEvent) {
         self.clock.events += 1;
         self.clock.time = happened.time;
         self.may_meet = false;
         self.totals.add(happened);
         if let Some(followed) = &mut self.followed {
-            let mut see = |disc: u32| followed.see(&self.arena, disc, self.engine.disc(disc));
+            let mut see = |disc: u32| followed.register_crossings(&self.arena, disc, self.engine.disc(disc));
             see(happened.disc);
             if let EventPartner::Disc(other) = happened.with {
                 see(other);
@@ -151,7 +151,7 @@ impl HardDiskSimulation {
     fn is_idle(&mut self) -> bool {
         if !self.may_meet {
             let discs: Vec<FlyingDisc> = self.discs().copied().collect();
-            self.may_meet = !never(&self.arena, &discs);
+            self.may_meet = !is_idle_forever(&self.arena, &discs);
         }
         !self.may_meet
     }
@@ -241,7 +241,7 @@ impl HardDiskSimulation {
     }
 
     /// Current observation, and the sums from which its means are calculated.
-    fn seen(&self) -> (HardDiskObservation, IntervalMark) {
+    fn observation_and_mark(&self) -> (HardDiskObservation, IntervalMark) {
         let (time, motion) = (self.clock.time, self.motion());
         let mark = self.totals.mark(&self.arena, self.discs(), &motion, time);
         let IntervalMeans { compressibility, collision_rate } = mark.since(&self.row, &motion);
@@ -273,7 +273,7 @@ impl PerParticle for HardDiskSimulation {
         let all = particles.all_mut();
         let time = self.clock.time;
         for (disc, &place) in self.discs().zip(&self.places) {
-            all[place].position = in_space(self.arena.place(disc, time));
+            all[place].position = in_space(self.arena.position_at(disc, time));
             all[place].velocity = in_space(disc.velocity_at(&self.arena.space, time));
         }
         particles
@@ -282,12 +282,17 @@ impl PerParticle for HardDiskSimulation {
     fn states(&self, states: &mut GrainStates) {
         let time = self.clock.time;
         for (disc, &number) in self.discs().zip(&self.places) {
-            states.put(number, self.arena.place(disc, time), disc.velocity_at(&self.arena.space, time));
+            states.store_state(
+                number,
+                self.arena.position_at(disc, time),
+                disc.velocity_at(&self.arena.space, time),
+            );
         }
     }
 
     fn images(&self) -> Vec<[i32; 2]> {
-        let Some(followed) = self.followed.as_ref().filter(|it| it.follows(&self.arena)) else {
+        let Some(followed) = self.followed.as_ref().filter(|it| it.is_following_all_sides(&self.arena))
+        else {
             return vec![];
         };
         let mut images = vec![[0; 2]; self.particles.len()];
@@ -306,7 +311,7 @@ impl Simulation for HardDiskSimulation {
             Until::Steps(_) | Until::Events(_) => None,
         });
         let end = end.fold(f64::INFINITY, f64::min);
-        while !until.iter().any(|moment| moment.has_come(&self.clock)) {
+        while !until.iter().any(|moment| moment.has_been_reached(&self.clock)) {
             if self.clock.events.is_multiple_of(INTERRUPT_CHECK_INTERVAL)
                 && interrupted.load(Ordering::Relaxed)
             {
@@ -316,10 +321,10 @@ impl Simulation for HardDiskSimulation {
             match self.engine.next(end, since_check) {
                 Err(why) => return Err(self.failure(why)),
                 Ok(Some(happened)) => {
-                    self.count(&happened);
+                    self.record_event(&happened);
                     let engine = &self.engine;
                     let crossing = || crossing((0..engine.count() as u32).map(|number| engine.disc(number)));
-                    if let Some(endless) = self.watch.see(&happened, crossing) {
+                    if let Some(endless) = self.watch.register_event(&happened, crossing) {
                         return Err(self.endless(&happened, endless));
                     }
                 }
@@ -348,11 +353,11 @@ impl Simulation for HardDiskSimulation {
     }
 
     fn observe(&self) -> Vec<f64> {
-        values(&OBSERVABLES, &self.seen().0)
+        values(&OBSERVABLES, &self.observation_and_mark().0)
     }
 
     fn row(&mut self) -> Vec<f64> {
-        let (seen, mark) = self.seen();
+        let (seen, mark) = self.observation_and_mark();
         self.row = mark;
         values(&OBSERVABLES, &seen)
     }
@@ -372,7 +377,7 @@ impl Simulation for HardDiskSimulation {
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
-        clock.of_events()?;
+        clock.check_event_clock()?;
         let mut discs: Vec<FlyingDisc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
             let values = snapshot.numbers(name, discs.len())?;
@@ -380,9 +385,9 @@ impl Simulation for HardDiskSimulation {
         }
         let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
-        sound(&self.arena, &self.particles, &discs, &clock)?;
-        self.totals = CollisionTotals::kept(&snapshot, clock.events)?;
-        self.row = IntervalMark::kept(&snapshot, &self.totals)?;
+        check_restored_discs(&self.arena, &self.particles, &discs, &clock)?;
+        self.totals = CollisionTotals::totals_from_snapshot(&snapshot, clock.events)?;
+        self.row = IntervalMark::mark_from_snapshot(&snapshot, &self.totals)?;
         self.watch.restore(&snapshot)?;
         if let Some(followed) = &mut self.followed {
             followed.take_up(&discs, &snapshot.columns)?;
@@ -436,7 +441,7 @@ impl Simulation for HardDiskSimulation {
     }
 
     fn in_words(&self) -> String {
-        let (HardDiskObservation { temperature, .. }, mark) = self.seen();
+        let (HardDiskObservation { temperature, .. }, mark) = self.observation_and_mark();
         let IntervalMeans { compressibility, collision_rate } =
             mark.since(&IntervalMark::default(), &self.motion());
         let temperature = match temperature.is_nan() {
@@ -446,7 +451,7 @@ impl Simulation for HardDiskSimulation {
         format!(
             "{}, {} collisions of pairs; temperature {temperature}; since the start: compressibility {}, {} collisions per disc and \
              unit of time",
-            counted(self.places.len(), "disc", "discs"),
+            count_with_noun(self.places.len(), "disc", "discs"),
             self.totals.collisions,
             significant(compressibility, 5),
             significant(collision_rate, 5)

@@ -44,7 +44,7 @@ impl StartOverlaps {
     }
 
     /// Shrinks all radii until nothing overlaps, if the overlaps are within the precision of positions. Returns a warning if it did.
-    pub(super) fn undone(
+    pub(super) fn shrink_radii(
         &self,
         values: &SceneValues,
         scene: &HardDiskScene,
@@ -56,7 +56,7 @@ impl StartOverlaps {
         particles.all_mut().iter_mut().for_each(|disc| disc.radius *= 1.0 - self.deepest);
         let key = match scene.start {
             DiscStart::File(_) => &FILE,
-            _ if values.gives(&POSITIONS) => &POSITIONS,
+            _ if values.is_given(&POSITIONS) => &POSITIONS,
             _ => &GENERATE,
         };
         let part = significant(self.deepest, 2);

@@ -121,7 +121,7 @@ impl CollisionTotals {
     ///
     /// # Errors
     /// A message if one is missing.
-    pub(super) fn kept(kept: &Snapshot, events: u64) -> Result<CollisionTotals, String> {
+    pub(super) fn totals_from_snapshot(kept: &Snapshot, events: u64) -> Result<CollisionTotals, String> {
         let collisions = kept.count_at_most("collisions", events)?;
         Ok(CollisionTotals {
             collisions,
@@ -165,7 +165,10 @@ impl IntervalMark {
     ///
     /// # Errors
     /// A message if it is missing or later than the sums.
-    pub(super) fn kept(kept: &Snapshot, totals: &CollisionTotals) -> Result<IntervalMark, String> {
+    pub(super) fn mark_from_snapshot(
+        kept: &Snapshot,
+        totals: &CollisionTotals,
+    ) -> Result<IntervalMark, String> {
         Ok(IntervalMark {
             time: kept.sum("row.time")?,
             collisions: kept.count_at_most("row.collisions", totals.collisions)?,

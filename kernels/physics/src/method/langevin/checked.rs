@@ -1,7 +1,7 @@
 //! Checks a scene of particles in a bath against the preconditions of the method.
 
-use super::found::{ChosenSearch, found};
-use super::limits::{CollidingParticles, bound, step_limits};
+use super::found::{ChosenSearch, choose_pair_search};
+use super::limits::{CollidingParticles, lan17_step_bound, step_limits};
 use super::scene::LangevinScene;
 use crate::domain::Domain;
 use crate::method::{Prepared, StepLimit, compress};
@@ -10,7 +10,7 @@ use crate::particles::{Particle, Particles};
 use crate::scene::{
     DT, GENERATE, MistakeKind, RADIUS, ReadBinding, SceneError, SceneErrors, SceneValues, WallMotion, Warning,
 };
-use crate::start::{StatedStart, make, noise_seed, outside, overlaps};
+use crate::start::{StatedStart, create_initial_state, noise_seed, outside, overlaps};
 use stripmine_kernels::noise::NoiseSource;
 
 /// Largest pair energy at the start, in ε.
@@ -41,14 +41,14 @@ pub(super) struct CheckedLangevin {
 /// # Errors
 /// [`SceneErrors`] with every violated precondition.
 pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
-    Ok(checked(values)?.prepared())
+    Ok(check_langevin_scene(values)?.prepared())
 }
 
 /// Checks a scene and returns the method's own representation.
-pub(super) fn checked(values: SceneValues) -> Result<CheckedLangevin, SceneErrors> {
+pub(super) fn check_langevin_scene(values: SceneValues) -> Result<CheckedLangevin, SceneErrors> {
     let (mut scene, mut read) = (LangevinScene::default(), ReadBinding::new(&values));
     scene.bind(&mut read);
-    read.done()?;
+    read.finish_reading()?;
     let stated = StatedStart {
         values: &values,
         domain: &scene.domain,
@@ -56,7 +56,7 @@ pub(super) fn checked(values: SceneValues) -> Result<CheckedLangevin, SceneError
         walls: WallMotion::Fixed,
         compress,
     };
-    let made = make(&stated)?;
+    let made = create_initial_state(&stated)?;
     let (domain, particles) = (made.domain, made.particles);
     let mut errors = outside(&stated, &domain, &particles);
     if scene.law.has_pairs() {
@@ -74,7 +74,8 @@ pub(super) fn checked(values: SceneValues) -> Result<CheckedLangevin, SceneError
     let (diameter, mass) = (2.0 * first.radius, first.mass);
     let reach = scene.law_at(diameter).cutoff();
     let mut choices = vec![];
-    let found = found(&values, &mut scene, &domain, [diameter, reach], particles.len(), &mut choices);
+    let found =
+        choose_pair_search(&values, &mut scene, &domain, [diameter, reach], particles.len(), &mut choices);
     let found = match found {
         Ok(found) => found,
         Err(error) => {
@@ -82,7 +83,7 @@ pub(super) fn checked(values: SceneValues) -> Result<CheckedLangevin, SceneError
             return Err(SceneErrors(errors));
         }
     };
-    SceneErrors::none_of(errors)?;
+    SceneErrors::ok_if_empty(errors)?;
     let mut warnings = made.warnings;
     warnings.extend(too_long(&scene, diameter, mass));
     // Written into the scene if the start has no seed. Otherwise the noise follows the seed of the start, also if a
@@ -135,7 +136,7 @@ fn of_one_kind(values: &SceneValues, particles: &Particles) -> Result<Particle, 
 
 /// Warning for a step beyond LAN17's bound.
 fn too_long(scene: &LangevinScene, diameter: f64, mass: f64) -> Option<Warning> {
-    let (step, _) = bound(scene, diameter, mass);
+    let (step, _) = lan17_step_bound(scene, diameter, mass);
     (scene.law.has_pairs() && scene.dt > step).then(|| Warning {
         check: "source-bound",
         share: scene.dt / step,

@@ -41,7 +41,7 @@ impl ChosenSearch {
 }
 
 /// Chooses the pair search that the scene requests or that suits it.
-pub(super) fn found(
+pub(super) fn choose_pair_search(
     values: &SceneValues,
     scene: &mut LangevinScene,
     domain: &Domain,
@@ -51,11 +51,11 @@ pub(super) fn found(
 ) -> Result<ChosenSearch, SceneError> {
     let single = scene.precision != Precision::F64;
     let box_spot =
-        || -> Spot { if values.gives(&SIDES) { values.spot(&SIDES) } else { values.spot(&GENERATE) } };
+        || -> Spot { if values.is_given(&SIDES) { values.spot(&SIDES) } else { values.spot(&GENERATE) } };
     let edge = widest_cell(scene, diameter);
     let lattice = || lattice_of(domain, reach, edge);
     let lists = |scene: &LangevinScene| {
-        let skin = scene.skin.unwrap_or_else(|| roomy_skin(domain, reach, count));
+        let skin = scene.skin.unwrap_or_else(|| default_skin(domain, reach, count));
         let grid = sectors_of(domain, reach + skin, single, count);
         (grid.map(|grid| ChosenSearch::Lists(grid, skin)), skin)
     };
@@ -78,7 +78,7 @@ pub(super) fn found(
         PairSearchKind::Auto | PairSearchKind::NeighborList if scene.by == PairSearchKind::NeighborList || scene.skin.is_some() => {
             let (lists, skin) = lists(scene);
             lists.map_err(|cause| {
-                let spot = if values.gives(&SKIN) { values.spot(&SKIN) } else { box_spot() };
+                let spot = if values.is_given(&SKIN) { values.spot(&SKIN) } else { box_spot() };
                 let error = spot.error(MistakeKind::Geometry, format!("{cause}, with a skin of {skin}", skin = significant(skin, 5)));
                 error.advising("make the box larger, lower search.skin, or set search.by = \"sectors\"")
             })?
@@ -137,7 +137,7 @@ fn grid(values: &SceneValues, domain: &Domain, per_side: u64, reach: f64) -> Res
 
 /// Default skin of the lists beyond the cut-off (length): about half the mean spacing, within bounds, and no more than the box
 /// allows.
-fn roomy_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
+fn default_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
     let spacing = (domain.area() / count.max(1) as f64).sqrt();
     let wanted = (0.5 * spacing).clamp(0.2 * reach, 2.0 * reach);
     let room = (0..2).map(|axis| domain.length(axis) / 3.0 - reach).fold(f64::INFINITY, f64::min);

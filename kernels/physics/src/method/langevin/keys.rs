@@ -9,7 +9,7 @@ use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, GRAVITY, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind,
     OUTPUT, PERIODIC, PLANAR_DOMAIN, STEP, STEPPED_RUN, SUMMED, SceneError, SceneValues, TARGETED, Use,
-    Vocabulary, disagreements, too_many_steps,
+    Vocabulary, start_inconsistencies, too_many_steps,
 };
 use crate::words::Words;
 
@@ -74,7 +74,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             ("law.sigma", "the diameter σ is twice `particles.radius`"),
         ],
     },
-    rules: &[disagreements, too_many_steps, own_rules],
+    rules: &[start_inconsistencies, too_many_steps, own_rules],
     presets: super::presets::PRESETS,
     renamed: &[],
 };
@@ -92,7 +92,7 @@ fn own_rules(values: &SceneValues) -> Vec<SceneError> {
             refused(&GRAVITY, "`domain.gravity` is not 0, but nothing stops the fall across a periodic side");
         errors.push(error.expecting("gravity = [0.0, 0.0]"));
     }
-    if values.gives(&PER_SIDE) && values.gives(&SKIN) {
+    if values.is_given(&PER_SIDE) && values.is_given(&SKIN) {
         let error =
             refused(&PER_SIDE, "`search.sectors` and `search.skin` belong to two different pair searches");
         errors.push(error.advising("remove one of the two"));

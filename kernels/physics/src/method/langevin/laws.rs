@@ -182,7 +182,7 @@ impl PairLaw {
 
 impl SweptLaw {
     /// True if particles attract each other anywhere up to the cut-off, sampled at a hundred distances.
-    pub(super) fn attracts(&self) -> bool {
+    pub(super) fn is_attractive(&self) -> bool {
         (1..100).any(|place| self.potential().force(0.01 * f64::from(place) * self.cutoff()) < 0.0)
     }
 }
@@ -324,7 +324,7 @@ mod tests {
         let parameters = Parameters::default();
         for (law, attracts) in [(PairLaw::Wca, false), (PairLaw::LennardJones, true)] {
             assert_eq!([30.0, 100.0].map(|energies| law.nearest(&parameters, energies)), [0.82, 0.75]);
-            assert_eq!(law.of(&parameters, DIAMETER).attracts(), attracts);
+            assert_eq!(law.of(&parameters, DIAMETER).is_attractive(), attracts);
         }
         assert_eq!(PairLaw::None.nearest(&parameters, 30.0), 0.0);
     }

@@ -31,15 +31,15 @@ pub(super) fn step_limits(scene: &LangevinScene, particles: CollidingParticles) 
     };
     let mut limits = vec![];
     if scene.law.has_pairs() {
-        let (step, force) = bound(scene, diameter, mass);
+        let (step, force) = lan17_step_bound(scene, diameter, mass);
         limits.push(limit("source-bound", step, LimitConsequence::Unstable, {
             format!(
                 "√(2 m r_c/F) with F = {} at a distance of σ: necessary, but far from sufficient",
                 significant(force, 5)
             )
         }));
-        let energy = hardest(scene, particles);
-        let (step, nearest) = stiffest(scene, particles, energy);
+        let energy = hardest_collision_energy(scene, particles);
+        let (step, nearest) = stiffest_pair_limit(scene, particles, energy);
         limits.push(limit("hardest-collision", step, LimitConsequence::Unstable, {
             format!(
                 "2 √(m/(2 U″)) where the potential is {} kT, at {:.3} diameters: a longer step ejects pairs of this stiffness",
@@ -61,7 +61,7 @@ pub(super) fn step_limits(scene: &LangevinScene, particles: CollidingParticles) 
 }
 
 /// LAN17's bound of the step (time), and the force in it.
-pub(super) fn bound(scene: &LangevinScene, diameter: f64, mass: f64) -> (f64, f64) {
+pub(super) fn lan17_step_bound(scene: &LangevinScene, diameter: f64, mass: f64) -> (f64, f64) {
     let law = scene.law_at(diameter);
     let force = law.potential().force(diameter);
     ((2.0 * mass * law.cutoff() / force).sqrt(), force)
@@ -70,7 +70,7 @@ pub(super) fn bound(scene: &LangevinScene, diameter: f64, mass: f64) -> (f64, f6
 /// Energy, in kT, of the hardest collision expected in a run: one in M collisions exceeds ln M.
 ///
 /// Each of N particles collides 2 √π n σ √(kT/m) times per unit of time at a number density n, as in a dilute gas. The logarithm hardly depends on this rate.
-fn hardest(
+fn hardest_collision_energy(
     scene: &LangevinScene,
     CollidingParticles { diameter, mass, count, area }: CollidingParticles,
 ) -> f64 {
@@ -81,7 +81,7 @@ fn hardest(
 
 /// Stability limit (time) of velocity Verlet for the stiffness of a pair at the end of its hardest collision, of an energy in kT; and the
 /// distance of the two there (length).
-fn stiffest(
+fn stiffest_pair_limit(
     scene: &LangevinScene,
     CollidingParticles { diameter, mass, .. }: CollidingParticles,
     energy: f64,
@@ -103,7 +103,10 @@ mod tests {
             let mut scene = LangevinScene { dt: 0.01, ..LangevinScene::default() };
             scene.run.steps = (time / scene.dt).round() as u64;
             let particles = CollidingParticles { diameter: 1.0, mass: 1.0, count: 1000, area: 1000.0 };
-            (hardest(&scene, particles), stiffest(&scene, particles, hardest(&scene, particles)).0)
+            (
+                hardest_collision_energy(&scene, particles),
+                stiffest_pair_limit(&scene, particles, hardest_collision_energy(&scene, particles)).0,
+            )
         };
         let (energy, step) = of_time(1000.0);
         assert!((energy - 14.388).abs() < 1e-3, "{energy}");

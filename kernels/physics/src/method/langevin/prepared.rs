@@ -22,7 +22,7 @@ use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
-use stripmine_kernels::isa::aligned_column::taken as row;
+use stripmine_kernels::isa::aligned_column::column_memory as row;
 use stripmine_kernels::noise::NoiseSource;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 
@@ -30,7 +30,7 @@ impl CheckedLangevin {
     /// Turns the checked scene into the interface common to all methods.
     pub(super) fn prepared(self) -> Prepared {
         let (scene, word) = (&self.scene, self.scene.law.word());
-        let only_repels = self.has_pairs() && !scene.law_at(self.diameter).attracts();
+        let only_repels = self.has_pairs() && !scene.law_at(self.diameter).is_attractive();
         Prepared {
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
@@ -255,7 +255,9 @@ mod tests {
             let at = |parts: u32| prepared("langevin-dense", &fluid, PART * f64::from(parts));
             let exact = after(&at(1), 0.2, (7, 1));
             let differences = |seed: u64| {
-                [8, 4, 2].map(|parts| apart(&after(&at(parts), 0.2, (seed, parts)), &exact, |it| it.place()))
+                [8, 4, 2].map(|parts| {
+                    apart(&after(&at(parts), 0.2, (seed, parts)), &exact, |it| it.planar_position())
+                })
             };
             let [same, other] = [differences(7), differences(8)];
             assert!(same[0] > least * same[1] && same[1] > least * same[2], "{scheme}: {same:?}");

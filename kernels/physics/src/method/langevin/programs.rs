@@ -57,7 +57,7 @@ impl LawTask for LatticeForceProgram<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::checked::checked;
+    use super::super::checked::check_langevin_scene;
     use super::super::keys::VOCABULARY;
     use super::super::laws::PairLaw;
     use super::*;
@@ -69,12 +69,12 @@ mod tests {
     use stripmine_kernels::{Execution, InstructionSet};
 
     /// Forces from the potential, summed over all pairs.
-    fn written_down(checked: &CheckedLangevin, particles: &Particles) -> Vec<[f64; 2]> {
+    fn forces_by_pairs(checked: &CheckedLangevin, particles: &Particles) -> Vec<[f64; 2]> {
         let law = checked.scene.law_at(checked.diameter);
         let force = |a: &Particle| {
             let mut sum = [0.0; 2];
             for b in particles.all().iter().filter(|b| b.id != a.id) {
-                let way = checked.domain.displacement(b.place(), a.place());
+                let way = checked.domain.displacement(b.planar_position(), a.planar_position());
                 let square = way[0] * way[0] + way[1] * way[1];
                 if square < checked.reach * checked.reach {
                     let strength = law.potential().force(square.sqrt()) / square.sqrt();
@@ -96,7 +96,7 @@ mod tests {
                 "domain.sides=[18.0, 18.0]".to_owned(),
             ];
             let values = SceneValues::load("langevin-dense", &overrides, &[&VOCABULARY]).unwrap();
-            let checked = checked(values).unwrap();
+            let checked = check_langevin_scene(values).unwrap();
             let (shape, frame, mask) = lattice(&checked).unwrap();
             let mut particles = checked.particles.clone();
             for particle in particles.all_mut() {
@@ -122,7 +122,7 @@ mod tests {
                 (x[image.cell], y[image.cell]) = (x[image.source], y[image.source]);
             }
             let program = BathDynamics::of(&checked).with_law(LatticeForceProgram(&mask, shape, frame));
-            let expected = written_down(&checked, &particles);
+            let expected = forces_by_pairs(&checked, &particles);
             let largest = expected.iter().flatten().fold(0.0, |most: f64, it| most.max(it.abs()));
             assert!(largest > 0.1);
             for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {

@@ -79,7 +79,7 @@ impl LangevinSimulation {
     }
 
     /// Removes the particles named by a failure and continues.
-    fn lose(&mut self, failure: PhysicsFailure) -> Result<(), PhysicsFailure> {
+    fn remove_lost(&mut self, failure: PhysicsFailure) -> Result<(), PhysicsFailure> {
         let unfit: BTreeSet<usize> = self.state.unfit().into_iter().collect();
         let standing = self.state.unwrapped();
         self.state.check_ranks()?;
@@ -89,13 +89,13 @@ impl LangevinSimulation {
         let clock = self.clock();
         for &place in &unfit {
             let Particle { id, .. } = self.method.start.all()[place];
-            self.method.losses.add(id, clock.steps, clock.time, standing.all()[place].place());
+            self.method.losses.add(id, clock.steps, clock.time, standing.all()[place].planar_position());
         }
         let (lost, most) = (self.method.losses.count(), self.method.checked.scene.most_lost);
         if lost > most || unfit.len() == self.method.start.len() {
             return Err(self.too_many(failure, lost, most));
         }
-        self.without(&|place, _| unfit.contains(&place)).map_err(|why| {
+        self.remove_particles(&|place, _| unfit.contains(&place)).map_err(|why| {
             PhysicsFailure::new(super::LOST, why, "this is a bug: please report it with the scene").at(clock)
         })?;
         self.state.settle()
@@ -136,21 +136,25 @@ impl LangevinSimulation {
     }
 
     /// Removes the particles selected by index and properties from the state.
-    fn without(&mut self, leaves: &dyn Fn(usize, &Particle) -> bool) -> Result<(), String> {
+    fn remove_particles(&mut self, leaves: &dyn Fn(usize, &Particle) -> bool) -> Result<(), String> {
         let all = self.method.start.all();
         let stays: Vec<bool> =
             all.iter().enumerate().map(|(place, particle)| !leaves(place, particle)).collect();
         let start = all.iter().zip(&stays).filter(|(_, stays)| **stays).map(|(particle, _)| *particle);
         let start = Particles::new(start.collect());
-        let columns: Vec<(String, CheckpointColumn)> =
-            self.state.columns().into_iter().map(|(name, column)| kept(name, column, &stays)).collect();
-        self.state.check_ranks().map_err(|failure| failure.what())?;
+        let columns: Vec<(String, CheckpointColumn)> = self
+            .state
+            .columns()
+            .into_iter()
+            .map(|(name, column)| retained_entries(name, column, &stays))
+            .collect();
+        self.state.check_ranks().map_err(|failure| failure.what_and_when())?;
         let elapsed = self.state.elapsed();
         let (steps, timings, made) = (elapsed.steps, elapsed.timings, self.lists_made());
         let follows = self.method.purpose == StartPurpose::Run;
         self.state.end();
-        self.state =
-            stepper(&self.method.checked, start.clone(), follows).map_err(|failure| failure.what())?;
+        self.state = stepper(&self.method.checked, start.clone(), follows)
+            .map_err(|failure| failure.what_and_when())?;
         self.state.restore(steps, &columns)?;
         self.state.elapsed_mut().timings = timings;
         self.method.start = start;
@@ -187,7 +191,7 @@ impl LangevinSimulation {
 }
 
 /// Keeps the entries of the remaining particles; sums of forces restart at 0. Columns without one entry per particle are unchanged.
-fn kept(name: String, column: CheckpointColumn, stays: &[bool]) -> (String, CheckpointColumn) {
+fn retained_entries(name: String, column: CheckpointColumn, stays: &[bool]) -> (String, CheckpointColumn) {
     fn of<T: Copy>(values: Vec<T>, stays: &[bool]) -> Vec<T> {
         values.into_iter().zip(stays).filter(|(_, stays)| **stays).map(|(value, _)| value).collect()
     }
@@ -208,7 +212,7 @@ fn kept(name: String, column: CheckpointColumn, stays: &[bool]) -> (String, Chec
 
 impl LangevinSimulation {
     /// Current observation.
-    fn seen(&self) -> LangevinObservation {
+    fn langevin_observation(&self) -> LangevinObservation {
         let (particles, mass) = (self.state.unwrapped(), self.method.checked.mass);
         let count = particles.len() as f64;
         let velocities = || particles.all().iter().map(Particle::planar_velocity);
@@ -251,7 +255,7 @@ impl PerParticle for LangevinSimulation {
         // The stepper numbers only the remaining particles.
         match self.method.start.len() == self.method.checked.particles.len() {
             true => self.state.states(states),
-            false => states.take_up(&self.state.particles()),
+            false => states.store_grains(&self.state.particles()),
         }
     }
 
@@ -282,7 +286,7 @@ impl Stepwise for LangevinRunState {
         loop {
             match done.and_then(|()| run.compute_forces()) {
                 Ok(()) => break,
-                Err(failure) if is_loss(&failure) => done = run.lose(failure),
+                Err(failure) if is_loss(&failure) => done = run.remove_lost(failure),
                 Err(failure) => return Err(failure),
             }
         }
@@ -290,15 +294,15 @@ impl Stepwise for LangevinRunState {
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&LangevinObservation) -> R) -> R {
-        work(&run.seen())
+    fn with_observation<R>(run: &Stepped<Self>, work: impl FnOnce(&LangevinObservation) -> R) -> R {
+        work(&run.langevin_observation())
     }
 
     fn per_particle(run: &Stepped<Self>) -> &dyn PerParticle {
         run
     }
 
-    fn keep(run: &Stepped<Self>, kept: &mut Snapshot) {
+    fn save_into(run: &Stepped<Self>, kept: &mut Snapshot) {
         for (name, sum) in OF_PAIRS.into_iter().zip(run.method.of_pairs) {
             kept.add_sum(name, sum);
         }
@@ -318,7 +322,7 @@ impl Stepwise for LangevinRunState {
         run.method.losses.take_up(clock.steps, &ids, &columns)?;
         let lost: BTreeSet<u32> = run.method.losses.ids().collect();
         if !lost.is_empty() {
-            run.without(&|_, particle| lost.contains(&particle.id))?;
+            run.remove_particles(&|_, particle| lost.contains(&particle.id))?;
         }
         run.state.restore(clock.steps, &columns)?;
         run.count_lists_from(made);
@@ -367,7 +371,7 @@ impl Stepwise for LangevinRunState {
     }
 
     fn in_words(run: &Stepped<Self>) -> String {
-        let LangevinObservation { temperature, pressure, msd, .. } = run.seen();
+        let LangevinObservation { temperature, pressure, msd, .. } = run.langevin_observation();
         format!(
             "{} particles, {} lost{}; temperature {}, pressure {}, mean square displacement {}",
             run.left(),

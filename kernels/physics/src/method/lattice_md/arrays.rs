@@ -97,34 +97,35 @@ fn bound<'a, S: Precision, P: Precision>(
 }
 
 /// Stores an array's elements in cache lines of their own.
-fn laid_out<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
+fn aligned_array<X: Copy>(array: Array, values: impl IntoIterator<Item = X>) -> AlignedColumn<X> {
     AlignedColumn::new(array as usize, values)
 }
 
 impl<S: Precision, P: Precision> ProgramArrays<S, P> {
     /// Stores `particles`; derivatives above the velocity start at zero. Forces are stored by cell.
     pub fn new(model: &GranularModel, particles: &Particles) -> Self {
-        ProgramArrays::lay_out(model, particles, false)
+        ProgramArrays::with_layout(model, particles, false)
     }
 
     /// Stores `particles` with forces by disc: for searches that let discs share a cell.
     pub(crate) fn with_forces_by_disc(model: &GranularModel, particles: &Particles) -> Self {
-        ProgramArrays::lay_out(model, particles, true)
+        ProgramArrays::with_layout(model, particles, true)
     }
 
-    fn lay_out(model: &GranularModel, particles: &Particles, by_disc: bool) -> Self {
+    fn with_layout(model: &GranularModel, particles: &Particles, by_disc: bool) -> Self {
         let lengths = Lengths::new(model, particles.grain_count(), particles.len());
         let (discs, padded) = (lengths.discs, lengths.padded);
-        let convert = |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(S::from_f64)));
+        let convert =
+            |array, values: Vec<f64>| (array, aligned_array(array, values.into_iter().map(S::from_f64)));
         let on_lattice =
-            |array, values: Vec<f64>| (array, laid_out(array, values.into_iter().map(P::from_f64)));
+            |array, values: Vec<f64>| (array, aligned_array(array, values.into_iter().map(P::from_f64)));
 
         let anchored: Option<Vec<(u32, [f64; 2])>> = model
             .is_anchored::<S>()
-            .then(|| particles.all().iter().map(|disc| model.anchored(disc.place())).collect());
+            .then(|| particles.all().iter().map(|disc| model.anchored(disc.planar_position())).collect());
         let places: Vec<[f64; 2]> = match &anchored {
             Some(anchored) => anchored.iter().map(|(_, place)| *place).collect(),
-            None => particles.all().iter().map(Particle::place).collect(),
+            None => particles.all().iter().map(Particle::planar_position).collect(),
         };
         let velocity_scale = scales(model)[1];
         let mut state = Vec::new();
@@ -141,7 +142,7 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
             }
         }
 
-        let mut constant = vec![(Array::FarX, laid_out(Array::FarX, model.shape.far(model.frame)))];
+        let mut constant = vec![(Array::FarX, aligned_array(Array::FarX, model.shape.far(model.frame)))];
         if model.discs == DiscUniformity::Varying {
             let of_grains = |inverse: fn(&Particle, f64) -> f64| -> Vec<f64> {
                 let value = |disc: &Particle| match disc.kind {
@@ -214,7 +215,7 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
         let asked = model.asked();
         if asked.watched.is_some() {
             columns(&[Array::Deepest], padded);
-            constant.push((Array::Interior, laid_out(Array::Interior, model.shape.interior())));
+            constant.push((Array::Interior, aligned_array(Array::Interior, model.shape.interior())));
         }
         if asked.dissipation {
             columns(&[Array::Power], padded);
@@ -227,7 +228,7 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
         for (component, array) in [Array::DiscVx, Array::DiscVy, Array::DiscOmega].into_iter().enumerate() {
             if let Some((_, column)) = lattice.iter_mut().find(|(name, _)| *name == array) {
                 let own = particles.all().iter().map(|disc| P::from_f64(velocity(disc)[component]));
-                *column = laid_out(array, own);
+                *column = aligned_array(array, own);
             }
         }
 
@@ -236,13 +237,13 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
             lattice,
             constant,
             cell: match anchored {
-                Some(anchored) => laid_out(Array::DiscCell, anchored.into_iter().map(|(cell, _)| cell)),
+                Some(anchored) => aligned_array(Array::DiscCell, anchored.into_iter().map(|(cell, _)| cell)),
                 None => AlignedColumn::filled(Array::DiscCell as usize, 0, discs),
             },
-            force_at: by_disc.then(|| laid_out(Array::DiscCell, 1..=discs as u32)),
+            force_at: by_disc.then(|| aligned_array(Array::DiscCell, 1..=discs as u32)),
             index: AlignedColumn::filled(Array::Index as usize, 0, padded),
-            halo_cell: laid_out(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
-            halo_source: laid_out(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
+            halo_cell: aligned_array(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
+            halo_source: aligned_array(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
             lengths,
         }
     }

@@ -8,7 +8,7 @@ use super::{
     SteppedGrains,
 };
 use crate::method::PhysicsFailure;
-use crate::method::refuse_several_ranks;
+use crate::method::reject_several_ranks;
 use stripmine_kernels::law::granular::EqualDiscs;
 
 /// Returns the model of a checked scene, without the parts that it does not need.
@@ -70,7 +70,7 @@ pub(super) fn contacts(checked: &CheckedGranularScene) -> ContactSearch {
 /// # Errors
 /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
 pub fn assemble(checked: &CheckedGranularScene) -> Result<SteppedGrains, PhysicsFailure> {
-    start_of(checked, model(checked))
+    started_grains(checked, model(checked))
 }
 
 /// Builds the discs of a checked scene and tracks energy: dissipation, wall work, and periods crossed along gravity; and along every axis if the
@@ -79,7 +79,7 @@ pub fn assemble(checked: &CheckedGranularScene) -> Result<SteppedGrains, Physics
 /// # Errors
 /// As [`assemble`].
 pub fn assemble_following_energy(checked: &CheckedGranularScene) -> Result<SteppedGrains, PhysicsFailure> {
-    start_of(checked, model_following_energy(checked))
+    started_grains(checked, model_following_energy(checked))
 }
 
 /// Returns the model of a checked scene that tracks energy.
@@ -90,10 +90,13 @@ pub(super) fn model_following_energy(checked: &CheckedGranularScene) -> Granular
     model
 }
 
-fn start_of(checked: &CheckedGranularScene, model: GranularModel) -> Result<SteppedGrains, PhysicsFailure> {
+fn started_grains(
+    checked: &CheckedGranularScene,
+    model: GranularModel,
+) -> Result<SteppedGrains, PhysicsFailure> {
     let CheckedGranularScene { scene, particles, .. } = checked;
     if !scene.machine.is_fast() {
-        refuse_several_ranks(
+        reject_several_ranks(
             "BP93's programs act on whole arrays; only machine.engine = \"fast\" has bands",
         )?;
     }

@@ -33,7 +33,7 @@ impl GravityPath {
         let mut way = GravityPath { domain, gravity, from: vec![] };
         if gravity != [0.0; 2] {
             let standing = standing();
-            let places = standing.grains().iter().map(Particle::place).enumerate();
+            let places = standing.grains().iter().map(Particle::planar_position).enumerate();
             way.from = places.map(|(number, place)| way.unfolded(number, place, crossings)).collect();
         }
         way
@@ -77,16 +77,16 @@ pub struct EnergyBalance {
 impl BalanceTerms {
     /// Starts at the first observation.
     pub(super) fn begin(way: GravityPath, first: &Observation) -> BalanceTerms {
-        BalanceTerms { way, start: inner(first) }
+        BalanceTerms { way, start: internal_energy(first) }
     }
 
     /// Returns the displacements of the grains.
-    pub(super) fn way(&self) -> &GravityPath {
+    pub(super) fn gravity_path(&self) -> &GravityPath {
         &self.way
     }
 
     /// Scale of the balance: energy at the start plus the magnitudes of gravity work and wall work since.
-    pub(super) fn passed(&self, balance: &EnergyBalance) -> f64 {
+    pub(super) fn energy_scale(&self, balance: &EnergyBalance) -> f64 {
         self.start + balance.gravity_work.abs() + balance.wall_work.abs()
     }
 
@@ -99,11 +99,11 @@ impl BalanceTerms {
     ) -> EnergyBalance {
         let GranularTotals { dissipated, wall_work, .. } = *totals;
         let gravity_work = sums.grains.gravity_work;
-        let balance_error = inner(now) - self.start - gravity_work - wall_work + dissipated;
+        let balance_error = internal_energy(now) - self.start - gravity_work - wall_work + dissipated;
         EnergyBalance { dissipated, gravity_work, wall_work, balance_error }
     }
 }
 
-fn inner(seen: &Observation) -> f64 {
+fn internal_energy(seen: &Observation) -> f64 {
     seen.kinetic + seen.rotational + seen.elastic
 }

@@ -36,7 +36,7 @@ impl GranularDocument {
     pub(super) fn read(values: SceneValues) -> Result<GranularDocument, SceneErrors> {
         let (mut scene, mut read) = (GranularScene::default(), ReadBinding::new(&values));
         scene.bind(&mut read);
-        read.done()?;
+        read.finish_reading()?;
         if asks_for_programs(&values) {
             scene.machine.engine = EngineChoice::Programs;
         }

@@ -50,15 +50,15 @@ pub(super) fn stepping<S: Precision, P: Precision>(
     match search {
         FastSearch::Lattice(on_conflict) => {
             let search = LatticeSearch::<P>::new::<S>(model.shape, model.frame, on_conflict, radii);
-            by::<S, P, _>(model, search, set, walls, particles)
+            stepping_with::<S, P, _>(model, search, set, walls, particles)
         }
         FastSearch::Sectors => {
             let search = SectorSearch::<P>::new::<S>(sectors(0.0)?, discs, reach);
-            by::<S, P, _>(model, search, set, walls, particles)
+            stepping_with::<S, P, _>(model, search, set, walls, particles)
         }
         FastSearch::Lists { skin } => {
             let search = ListSearch::<S, P>::new(sectors(skin)?, discs, reach, skin);
-            by::<S, P, _>(model, search, set, walls, particles)
+            stepping_with::<S, P, _>(model, search, set, walls, particles)
         }
     }
 }
@@ -90,7 +90,7 @@ impl Dynamics for GranularDynamics {
 }
 
 /// Places the discs with a given search.
-fn by<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static>(
+fn stepping_with<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static>(
     model: &GranularModel,
     search: Q,
     set: InstructionSet,

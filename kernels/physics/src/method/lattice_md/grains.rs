@@ -3,7 +3,7 @@
 use super::balance::GravityPath;
 use super::contacts::{ContactSearch, ProgramExecution};
 use super::fast;
-use super::judge::{judge_depth, judge_steps};
+use super::judge::{check_contact_depths, check_step_lengths};
 use super::simulation::LatticeMd;
 use super::walls::wall_power;
 use super::{GranularModel, GranularTotals, Lengths, Timings};
@@ -73,7 +73,7 @@ impl SteppedGrains {
     /// [`Failure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
     pub fn step(&mut self) -> Result<(), PhysicsFailure> {
         let far = self.stepping.advance()?;
-        judge_steps(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
+        check_step_lengths(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
         self.totals.shared_cells += self.stepping.shared_cells() as u64;
         let power = self.compute_forces()?;
         self.totals.add_work(self.model.dt, power, self.wall_power());
@@ -84,7 +84,7 @@ impl SteppedGrains {
     fn compute_forces(&mut self) -> Result<f64, PhysicsFailure> {
         let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
-        judge_depth(self.stepping.as_ref(), &met.deep, self.model.watch, &mut self.totals)?;
+        check_contact_depths(self.stepping.as_ref(), &met.deep, self.model.watch, &mut self.totals)?;
         Ok(met.dissipated)
     }
 

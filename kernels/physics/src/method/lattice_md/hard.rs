@@ -85,7 +85,7 @@ mod tests {
     use crate::method::{METHODS, prepare, vocabularies};
     use crate::particles::Particles;
 
-    fn both(overrides: &[&str], quantity: &str) -> (Particles, Option<(Prepared, TranslatedScene)>) {
+    fn soft_and_hard(overrides: &[&str], quantity: &str) -> (Particles, Option<(Prepared, TranslatedScene)>) {
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         let known = vocabularies(METHODS);
         let values = SceneValues::load("dense-gas", &overrides, &known).unwrap();
@@ -136,12 +136,12 @@ mod tests {
     /// The twin has the same discs and the restitution of their law; what hard discs lack has no twin.
     #[test]
     fn the_twin_has_the_same_discs() {
-        let (soft, twin) = both(&["particles.count=100"], "pressure");
+        let (soft, twin) = soft_and_hard(&["particles.count=100"], "pressure");
         let (hard, twin) = twin.unwrap();
         assert_eq!(hard.particles().checksum(), soft.checksum());
         assert_eq!(twin.quantity, "compressibility");
         assert_eq!(twin.text.parse::<Table>().unwrap()["law"]["restitution"].as_float(), Some(1.0));
-        let (_, twin) = both(&["law.normal_damping=0.3"], "temperature");
+        let (_, twin) = soft_and_hard(&["law.normal_damping=0.3"], "temperature");
         let (_, twin) = twin.unwrap();
         let restitution = twin.text.parse::<Table>().unwrap()["law"]["restitution"].as_float().unwrap();
         assert!((0.8..0.99).contains(&restitution), "{restitution}");
@@ -151,7 +151,7 @@ mod tests {
             ("law.normal_damping=0.3", "pressure"),
             ("law.normal_damping=0.3", "flow"),
         ] {
-            assert!(both(&[law], quantity).1.is_none(), "{law} {quantity}");
+            assert!(soft_and_hard(&[law], quantity).1.is_none(), "{law} {quantity}");
         }
     }
 }

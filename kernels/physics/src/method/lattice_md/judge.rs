@@ -6,7 +6,7 @@ use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
 use crate::number::significant;
 
 /// Counts discs so fast that a step may miss their contacts, and stops if none are allowed.
-pub(super) fn judge_steps(
+pub(super) fn check_step_lengths(
     discs: &(impl NameableDiscs + ?Sized),
     far: &[u32],
     watch: Option<ContactWatch>,
@@ -34,7 +34,7 @@ pub(super) fn judge_steps(
 }
 
 /// Counts grains in contacts that are too deep, and stops above the limit. A pair may be listed once or from both sides.
-pub(super) fn judge_depth(
+pub(super) fn check_contact_depths(
     discs: &(impl NameableDiscs + ?Sized),
     pairs: &[[u32; 2]],
     watch: Option<ContactWatch>,

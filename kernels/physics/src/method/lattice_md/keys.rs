@@ -11,7 +11,7 @@ use crate::scene::keys::define_keys;
 use crate::scene::{
     ARITHMETIC, DISC_RIVALS, DISCS, DURATION, HEADING, INSTRUCTIONS, Key, KeySet, KeyValue, MistakeKind,
     OUTPUT, PLANAR_DOMAIN, PRECISION, RenamedKey, STEP, STEPPED_RUN, SUMMED, SceneError, SceneValues,
-    TARGETED, Use, Vocabulary, disagreements, too_many_steps,
+    TARGETED, Use, Vocabulary, start_inconsistencies, too_many_steps,
 };
 use crate::words::Words;
 use stripmine_kernels::law::granular::ContactArm;
@@ -103,7 +103,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             ("integrator.time_step", "did you mean `integrator.dt`?"),
         ],
     },
-    rules: &[disagreements, too_many_steps, own_rules],
+    rules: &[start_inconsistencies, too_many_steps, own_rules],
     presets: super::presets::PRESETS,
     renamed: RENAMED,
 };
@@ -135,7 +135,7 @@ fn own_rules(values: &SceneValues) -> Vec<SceneError> {
     if let (Some(a), Some(b)) = (values.number(low), values.number(high))
         && a > b
     {
-        let later = if values.gives(low) { low } else { high };
+        let later = if values.is_given(low) { low } else { high };
         let message = format!(
             "`{}` = {a} is above `{}` = {b}; a run must warn before it stops",
             low.path(),
@@ -145,13 +145,13 @@ fn own_rules(values: &SceneValues) -> Vec<SceneError> {
     }
     errors.extend(search_and_engine(values));
     if values.choice(&TEXT).as_deref() == Some(ProgramVersion::Printed.word()) {
-        errors.extend(beyond_the_print(values));
+        errors.extend(unsupported_by_paper(values));
     }
     errors
 }
 
 /// Rejects what the paper has no equation for.
-fn beyond_the_print(values: &SceneValues) -> Vec<SceneError> {
+fn unsupported_by_paper(values: &SceneValues) -> Vec<SceneError> {
     let demands: [(&Key, &str, &str); 6] = [
         (&PRECISION, "\"f64\"", "BP93 has one precision, that of a CRAY's 64-bit words"),
         (&COORDINATES, "\"absolute\"", "(5) and (6) subtract the positions themselves"),
@@ -168,7 +168,7 @@ fn beyond_the_print(values: &SceneValues) -> Vec<SceneError> {
     let refused = demands.into_iter().filter(|(key, demanded, _)| differs(key, demanded));
     refused
         .map(|(key, demanded, why)| {
-            let by = if values.gives(key) { key } else { &TEXT };
+            let by = if values.is_given(key) { key } else { &TEXT };
             let message = format!("BP93's printed program does not support this: {why}");
             let error = values.spot(by).error(MistakeKind::Contradiction, message);
             error.expecting(format!("{} = {demanded}, or text = \"ours\"", key.path()))
@@ -181,9 +181,9 @@ pub(super) fn asks_for_programs(values: &SceneValues) -> bool {
     let is = |key: &Key, word: &str| values.choice(key).as_deref() == Some(word);
     is(&ENGINE, "programs")
         || is(&ENGINE, "auto")
-            && (values.gives(&TEXT)
-                || values.gives(&EXECUTION)
-                || values.gives(&COORDINATES)
+            && (values.is_given(&TEXT)
+                || values.is_given(&EXECUTION)
+                || values.is_given(&COORDINATES)
                 || is(&REBUILD, "all-pairs"))
 }
 
@@ -193,7 +193,7 @@ fn search_and_engine(values: &SceneValues) -> Option<SceneError> {
     if values.is_faulty(&ENGINE) || values.is_faulty(&SEARCH) {
         return None;
     }
-    let given = |keys: &[&'static Key]| keys.iter().copied().find(|key| values.gives(key));
+    let given = |keys: &[&'static Key]| keys.iter().copied().find(|key| values.is_given(key));
     let refused = |key: &Key, message: &str| values.spot(key).error(MistakeKind::Contradiction, message);
     if asks_for_programs(values) {
         let by = given(&[&ENGINE, &TEXT, &EXECUTION, &COORDINATES, &REBUILD]).unwrap_or(&ENGINE);

@@ -13,7 +13,7 @@ use crate::near::NeighbourSearch;
 use crate::particles::Particle;
 use crate::scene::Precision;
 use std::collections::BTreeMap;
-use stripmine_kernels::isa::aligned_column::taken as row;
+use stripmine_kernels::isa::aligned_column::column_memory as row;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -41,7 +41,7 @@ pub fn foreseen(checked: &CheckedGranularScene) -> MemoryForecast {
         }
         ContactSearch::Lists(options) => {
             let [arrays, columns] = of.programs(true);
-            ([arrays + of.rival(options.skin), columns], (DISC + 16.0) * of.discs + near)
+            ([arrays + of.neighbour_list_bytes(options.skin), columns], (DISC + 16.0) * of.discs + near)
         }
     };
     let columns = columns + of.followed();
@@ -221,7 +221,7 @@ impl GranularSizes {
     }
 
     /// Bytes of the chained neighbour lists beside those arrays.
-    fn rival(&self, skin: f64) -> f64 {
+    fn neighbour_list_bytes(&self, skin: f64) -> f64 {
         let listed = self.neighbours(self.reach + skin);
         (4.0 + 4.0 * listed + 16.0 + self.varying() * self.force) * self.discs
     }

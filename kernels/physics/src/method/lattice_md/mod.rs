@@ -62,6 +62,6 @@ pub(crate) use model::OnLongStep;
 pub use model::{ContactWatch, DiscUniformity, GearValues, GranularModel, GranularScheme};
 pub use neighbor_list::{ListOptions, Rebuild};
 pub use options::ProgramVersion;
-pub use programs::{Part, StepProgram, execute, ledger, programs, rival_ledger};
+pub use programs::{Part, StepProgram, execute, ledger, neighbour_list_ledger, programs};
 pub use scene::{GranularScene, Inertia};
 pub use totals::{GranularTotals, TotalEntry};

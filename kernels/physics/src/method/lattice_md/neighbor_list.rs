@@ -1,7 +1,7 @@
 //! Scalar neighbour lists on the lattice method's state: the alternative in BP93.
 
 use super::options::ProgramVersion;
-use super::programs::with_law_of_text;
+use super::programs::with_program_law;
 use super::{DiscUniformity, GranularModel, ProgramArrays};
 use crate::domain::Domain;
 use crate::method::pairwise::LawTask;
@@ -11,7 +11,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Array;
 use stripmine_kernels::law::Law;
 use stripmine_kernels::sweep::lattice::Coordinates;
-use stripmine_kernels::sweep::neighbor_list::{self, CellOffsets, ListReport, NeighbourLists, walk};
+use stripmine_kernels::sweep::neighbor_list::{self, CellOffsets, ListReport, NeighbourLists, sweep_lists};
 
 define_words! {
     /// Construction of neighbour lists.
@@ -73,7 +73,7 @@ impl<P: Precision> ScalarLists<P> {
     }
 
     /// Restores lists that were built with the discs at `made_at`, after `rebuilds` builds, and visited `pairs` pairs in the last step.
-    pub(super) fn take_up(
+    pub(super) fn restore_lists(
         &mut self,
         model: &GranularModel,
         made_at: [Vec<f64>; 2],
@@ -87,7 +87,7 @@ impl<P: Precision> ScalarLists<P> {
     }
 
     /// Rebuilds the lists if a pair that is not listed could have come into contact.
-    pub(super) fn keep<S: Precision>(&mut self, model: &GranularModel, arrays: &ProgramArrays<S, P>) {
+    pub(super) fn update_lists<S: Precision>(&mut self, model: &GranularModel, arrays: &ProgramArrays<S, P>) {
         let (Some(x), Some(y)) = (arrays.state(Array::X0), arrays.state(Array::Y0)) else { return };
         let moved_too_far = 0.25 * self.options.skin * self.options.skin;
         let domain = model.domain();
@@ -116,9 +116,9 @@ impl<P: Precision> ScalarLists<P> {
             Rebuild::AllPairs => NeighbourLists::by_all_pairs(discs, near),
             Rebuild::Cells => {
                 let wrapped = |position: &[f64; 2]| domain.wrapped(*position);
-                let cells = NeighbourSearch::among(domain, made_at.iter().map(wrapped), limit);
+                let cells = NeighbourSearch::over_positions(domain, made_at.iter().map(wrapped), limit);
                 let around = |i: usize, take: &mut dyn FnMut(u32)| {
-                    cells.of(wrapped(&made_at[i])).for_each(|(number, _)| take(number));
+                    cells.candidates_near(wrapped(&made_at[i])).for_each(|(number, _)| take(number));
                 };
                 NeighbourLists::by_candidates(discs, around, near)
             }
@@ -138,7 +138,7 @@ impl<P: Precision> ScalarLists<P> {
         for sum in &mut sums {
             sum.resize(arrays.lengths().grains, P::from_f64(0.0));
         }
-        self.met = with_law_of_text(model, ListTraversal { rival: self, model, arrays, sums: &mut sums });
+        self.met = with_program_law(model, ListTraversal { rival: self, model, arrays, sums: &mut sums });
         for (array, sum) in [Array::Fx, Array::Fy, Array::Torque].into_iter().zip(sums) {
             if let Some(column) = arrays.lattice_mut(array) {
                 column[..sum.len()].copy_from_slice(&sum);
@@ -196,7 +196,7 @@ impl<S: Precision, P: Precision> LawTask for ListTraversal<'_, S, P> {
         let reach = self.rival.reach * (1.0 + 1e-6);
         let grains = self.arrays.lengths().grains;
         let ScalarLists { lists, cell_offsets, .. } = self.rival;
-        walk(&law, lists, cell_offsets, discs, grains, reach, asked, |disc, sums| {
+        sweep_lists(&law, lists, cell_offsets, discs, grains, reach, asked, |disc, sums| {
             self.sums.iter_mut().zip(sums).for_each(|(column, sum)| column[disc] = sum);
         })
     }

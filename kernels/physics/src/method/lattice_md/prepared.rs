@@ -4,7 +4,7 @@ use super::check::{CheckedGranularScene, MotionEstimates};
 use super::document::GranularDocument;
 use super::facts::{expected_error, facts};
 use super::fast::reach;
-use super::programs::with_law_of_text;
+use super::programs::with_program_law;
 use super::theory::limits::step_limits;
 use super::{Lengths, StepProgram, memory, model, programs, running};
 use crate::method::pairwise::PairForcesTask;
@@ -123,7 +123,7 @@ impl Startable for CheckedGranularScene {
     }
 
     fn pair_forces(&self) -> Option<PairForces> {
-        Some(with_law_of_text(&model(self), PairForcesTask(reach(&self.particles))))
+        Some(with_program_law(&model(self), PairForcesTask(reach(&self.particles))))
     }
 
     fn follows_crossings(&self) -> bool {

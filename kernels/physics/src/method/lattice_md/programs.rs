@@ -82,7 +82,7 @@ pub fn programs(model: &GranularModel, precision: scene::Precision) -> Vec<StepP
 /// Compiles the programs with state of precision `S` and forces of precision `P`.
 pub(super) fn programs_of<S: Precision, P: Precision>(model: &GranularModel) -> Vec<StepProgram> {
     match model.text {
-        ProgramVersion::Ours => ours::<S, P>(model),
+        ProgramVersion::Ours => our_programs::<S, P>(model),
         ProgramVersion::Printed => printed_programs(model),
     }
 }
@@ -155,7 +155,7 @@ fn printed_corrector(model: &GranularModel) -> Box<dyn Runnable> {
     }
 }
 
-fn ours<S: Precision, P: Precision>(model: &GranularModel) -> Vec<StepProgram> {
+fn our_programs<S: Precision, P: Precision>(model: &GranularModel) -> Vec<StepProgram> {
     let (forces, fields) = with_law(model, LatticeSweep::<P>(model, PhantomData));
     let mut programs = vec![
         step(Part::Predictor, VectorLength::Grains, predictor::<S, P>(model)),
@@ -194,14 +194,14 @@ pub fn ledger(programs: &[StepProgram]) -> Ledger {
 
 /// Returns the operations of a step of BP93's neighbour lists, element by element and in double precision. They are the programs shared with the
 /// lattice, and the law: its distance section for every candidate, the rest for every pair.
-pub fn rival_ledger(model: &GranularModel) -> Ledger {
-    rival_ledger_of::<f64, f64>(model)
+pub fn neighbour_list_ledger(model: &GranularModel) -> Ledger {
+    neighbour_list_ledger_of::<f64, f64>(model)
 }
 
 /// Returns these operations with state of precision `S` and forces of precision `P`.
-pub(super) fn rival_ledger_of<S: Precision, P: Precision>(model: &GranularModel) -> Ledger {
-    let one_place = GranularModel { mask: Mask::one_place(), ..model.clone() };
-    let (law, _) = with_law_of_text(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
+pub(super) fn neighbour_list_ledger_of<S: Precision, P: Precision>(model: &GranularModel) -> Ledger {
+    let one_place = GranularModel { mask: Mask::single_offset(), ..model.clone() };
+    let (law, _) = with_program_law(&one_place, LatticeSweep::<P>(&one_place, PhantomData));
     let part = Part::Forces.name();
     let mut ledger = Ledger::default();
     for step in programs_of::<S, P>(model) {
@@ -229,7 +229,7 @@ pub(super) fn rival_ledger_of<S: Precision, P: Precision>(model: &GranularModel)
 }
 
 /// Applies a task to the law of the programs' version.
-pub(super) fn with_law_of_text<W: LawTask>(model: &GranularModel, task: W) -> W::Output {
+pub(super) fn with_program_law<W: LawTask>(model: &GranularModel, task: W) -> W::Output {
     match model.text {
         ProgramVersion::Ours => with_law(model, task),
         ProgramVersion::Printed => task.with(printed::Printed { contact: model.contact }),

@@ -46,7 +46,7 @@ impl RunMonitor {
     }
 
     /// Samples the grains.
-    pub(super) fn look(&mut self, grains: &GrainSums) {
+    pub(super) fn sample_speeds(&mut self, grains: &GrainSums) {
         let count = grains.count.max(1) as f64;
         let square = grains.square / count;
         // Discs in a common drift do not collide with each other, but they may collide with walls.

@@ -67,7 +67,7 @@ pub(super) fn begin(
     let work = BalanceTerms::begin(way, &Observation::new(grains.steps(), grains.time(), &sums, &scenery));
     let run_monitor = (purpose == StartPurpose::Run).then(|| {
         let mut run_monitor = RunMonitor::of(checked);
-        run_monitor.look(&sums.grains);
+        run_monitor.sample_speeds(&sums.grains);
         run_monitor
     });
     let count = particles.grain_count();
@@ -101,7 +101,7 @@ impl Stepped<GranularRun> {
     fn sums(&self) -> ObservationSums {
         let start = Instant::now();
         let GranularRun { scenery, work, observing, .. } = &self.method;
-        let sums = self.state.sums(scenery, work.way());
+        let sums = self.state.sums(scenery, work.gravity_path());
         observing.set(observing.get() + start.elapsed().as_secs_f64());
         sums
     }
@@ -156,16 +156,16 @@ impl Stepwise for GranularRun {
         run.state.step()?;
         if run.method.run_monitor.is_some() && RunMonitor::is_due(run.state.steps()) {
             let sums = run.sums();
-            run.method.run_monitor.iter_mut().for_each(|run_monitor| run_monitor.look(&sums.grains));
+            run.method.run_monitor.iter_mut().for_each(|run_monitor| run_monitor.sample_speeds(&sums.grains));
         }
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&GranularObservation) -> R) -> R {
+    fn with_observation<R>(run: &Stepped<Self>, work: impl FnOnce(&GranularObservation) -> R) -> R {
         work(run.seen())
     }
 
-    fn keep(run: &Stepped<Self>, kept: &mut Snapshot) {
+    fn save_into(run: &Stepped<Self>, kept: &mut Snapshot) {
         for (name, total) in run.state.totals().entries() {
             match total {
                 TotalEntry::Count(count) => kept.add_count(name, count),
@@ -182,7 +182,7 @@ impl Stepwise for GranularRun {
         });
         let discs = run.method.discs[0] + run.method.discs[1];
         let totals = totals.map_err(|name| format!("the total {name} is missing"))?;
-        totals.are_of(clock.steps, discs as u64)?;
+        totals.check_plausible(clock.steps, discs as u64)?;
         if let Some(run_monitor) = &mut run.method.run_monitor {
             run_monitor.restore(&snapshot.counters)?;
         }
@@ -240,7 +240,7 @@ impl Stepwise for GranularRun {
     fn warnings(run: &Stepped<Self>) -> Vec<RunWarning> {
         let (GranularObservation { balance, totals, .. }, run_monitor) =
             (run.seen(), &run.method.run_monitor);
-        let passed = run.method.work.passed(balance);
+        let passed = run.method.work.energy_scale(balance);
         let energy = run_monitor.as_ref().and_then(|_| checks::energy(balance, passed));
         let looked = run_monitor.iter().flat_map(RunMonitor::warnings);
         checks::counted(totals).into_iter().chain(looked).chain(energy).collect()

@@ -72,7 +72,7 @@ impl GranularTotals {
     ///
     /// # Errors
     /// Names the first impossible entry.
-    pub(super) fn are_of(&self, steps: u64, discs: u64) -> Result<(), String> {
+    pub(super) fn check_plausible(&self, steps: u64, discs: u64) -> Result<(), String> {
         // The start is counted too.
         let most = (steps + 1).saturating_mul(discs);
         let is_right = |total: TotalEntry| match total {

@@ -9,7 +9,7 @@ use super::keys::{
 };
 use super::options::{EngineChoice, Inertia, IntegratorKind, SearchKind};
 use super::quantities::QUANTITIES;
-use crate::method::observed::place;
+use crate::method::observed::quantity_index;
 use crate::method::trials::settings;
 use crate::method::{
     AxisSetting, ChoiceEffect, EnergyBalanceNames, Parameter, Prepared, SMALLEST_RADIUS, SettingAxis,
@@ -96,7 +96,7 @@ const PARAMETERS: &[Parameter] = &[
         unit: "",
         bounds: [1e-3, 0.907],
         is_logarithmic: false,
-        range: |values| values.gives(&PACKING_FRACTION).then_some([0.05, 0.85]),
+        range: |values| values.is_given(&PACKING_FRACTION).then_some([0.05, 0.85]),
         overrides: |_, value| Overrides::new().set(&PACKING_FRACTION, value),
         marks: |_| vec![],
     },
@@ -287,7 +287,7 @@ fn theory(values: &SceneValues, prepared: &Prepared, integrator: &AxisSetting) -
 /// True if moving discs touch at the start; with all discs at rest the third derivatives are zero.
 fn touches(prepared: &Prepared) -> bool {
     let moves = prepared.particles().grains().iter().any(|disc| disc.velocity != [0.0; 3]);
-    const CONTACTS: usize = place(QUANTITIES, "contacts");
+    const CONTACTS: usize = quantity_index(QUANTITIES, "contacts");
     let started = || prepared.start(StartPurpose::Measurement);
     moves && started().is_ok_and(|simulation| simulation.observe()[CONTACTS] > 0.0)
 }

@@ -1,6 +1,6 @@
 //! Column storage of bodies.
 
-use stripmine_kernels::sweep::all_pairs::{padded, padding};
+use stripmine_kernels::sweep::all_pairs::{padded_length, padding_position};
 
 /// Quantity along three axes, with an entry for every body and padding.
 pub(crate) type StateColumns = [Vec<f64>; 3];
@@ -33,7 +33,7 @@ impl PointMasses {
     /// Creates bodies from positions (length), velocities (length/time) and masses.
     pub fn new(bodies: impl ExactSizeIterator<Item = ([f64; 3], [f64; 3], f64)>) -> Self {
         let count = bodies.len();
-        let entries = padded(count);
+        let entries = padded_length(count);
         let mut made = PointMasses {
             count,
             position: zeros(entries),
@@ -48,7 +48,7 @@ impl PointMasses {
             }
         }
         // Padding has no mass and no velocity, so no step moves it.
-        made.position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding(n));
+        made.position[0][count..].iter_mut().enumerate().for_each(|(n, x)| *x = padding_position(n));
         made
     }
 

@@ -4,7 +4,7 @@ use super::choice;
 use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
 use super::options::{ForceEngine, StartKind};
 use super::scene::NbodyScene;
-use super::starts::{InitialBody, bodies};
+use super::starts::{InitialBody, initial_bodies};
 use crate::method::Prepared;
 use crate::particles::{Particle, ParticleKind, Particles};
 use crate::scene::{MistakeKind, PRECISION, Precision, ReadBinding, SceneError, SceneErrors, SceneValues};
@@ -26,14 +26,14 @@ pub(super) struct CheckedNbody {
 /// # Errors
 /// [`SceneErrors`] with every violated precondition.
 pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
-    Ok(checked(values)?.prepared())
+    Ok(check_nbody_scene(values)?.prepared())
 }
 
 /// Checks a scene and returns the method's own representation.
-pub(super) fn checked(values: SceneValues) -> Result<CheckedNbody, SceneErrors> {
+pub(super) fn check_nbody_scene(values: SceneValues) -> Result<CheckedNbody, SceneErrors> {
     let (mut scene, mut read) = (NbodyScene::default(), ReadBinding::new(&values));
     scene.bind(&mut read);
-    read.done()?;
+    read.finish_reading()?;
     let mut errors = vec![];
     if scene.precision == Precision::F32 {
         let error = values.spot(&PRECISION).error(
@@ -52,9 +52,9 @@ pub(super) fn checked(values: SceneValues) -> Result<CheckedNbody, SceneErrors> 
     }
     if scene.start.kind == StartKind::List {
         errors.extend(wrong_rows(&values, &scene));
-        SceneErrors::none_of(std::mem::take(&mut errors))?;
+        SceneErrors::ok_if_empty(std::mem::take(&mut errors))?;
     }
-    let of = bodies(&scene.start, scene.softening, scene.gravitational_constant);
+    let of = initial_bodies(&scene.start, scene.softening, scene.gravitational_constant);
     let radius = radius_shown(&scene, &of);
     let all = of.iter().zip(1..).map(|(&(mass, position, velocity), id)| Particle {
         id,
@@ -73,8 +73,8 @@ pub(super) fn checked(values: SceneValues) -> Result<CheckedNbody, SceneErrors> 
     if scene.precision == Precision::Mixed {
         errors.extend(too_light(&values, &particles));
     }
-    SceneErrors::none_of(errors)?;
-    let choices = choice::choose(&mut scene, particles.len());
+    SceneErrors::ok_if_empty(errors)?;
+    let choices = choice::resolve_engine(&mut scene, particles.len());
     Ok(CheckedNbody { scene, particles, choices })
 }
 
@@ -140,7 +140,7 @@ fn coincident(values: &SceneValues, particles: &Particles) -> Option<SceneError>
                 "bodies {first} and {} are both at ({x}, {y}, {z}), and their attraction is not softened",
                 body.id
             );
-            let spot = if values.gives(&BODIES) {
+            let spot = if values.is_given(&BODIES) {
                 values.item_spot(&BODIES, number)
             } else {
                 values.spot(&GENERATE)

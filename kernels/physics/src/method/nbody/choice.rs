@@ -13,7 +13,7 @@ use crate::words::Words;
 const FEW: usize = 12;
 
 /// Chooses the engine if the scene leaves it open. Returns the reasons, and notes on unexpectedly slow parts.
-pub(super) fn choose(scene: &mut NbodyScene, bodies: usize) -> Vec<String> {
+pub(super) fn resolve_engine(scene: &mut NbodyScene, bodies: usize) -> Vec<String> {
     let mut said = vec![];
     if scene.engine == ForceEngine::Auto {
         let is_plain = scene.precision == Precision::F64 && scene.arithmetic == ArithmeticKind::Exact;
@@ -51,7 +51,7 @@ mod tests {
         let engine = |bodies, precision, arithmetic| {
             let mut scene =
                 NbodyScene { engine: ForceEngine::Auto, precision, arithmetic, ..NbodyScene::default() };
-            let said = choose(&mut scene, bodies);
+            let said = resolve_engine(&mut scene, bodies);
             assert!(said[0].contains(scene.engine.word()), "{said:?}");
             scene.engine
         };
@@ -76,7 +76,7 @@ mod tests {
     fn slow_starts_are_reported() {
         let said = |scheme, engine| {
             let mut scene = NbodyScene { scheme, engine, ..NbodyScene::default() };
-            let said = choose(&mut scene, 100);
+            let said = resolve_engine(&mut scene, 100);
             assert_eq!(scene.engine, engine);
             said
         };

@@ -2,14 +2,14 @@
 
 use super::bodies::{PointMasses, StateColumns};
 use super::options::{ArithmeticKind, ForceEngine};
-use super::ranked::summed;
+use super::ranked::ranked_sums;
 use super::scene::NbodyScene;
 use super::schemes::{AccelerationField, SchemeName};
 use super::shifted::ShiftedPrograms;
-use super::sums::{ForceSums, StopCallback, go_on};
-pub use super::sums::{never, potential};
+use super::sums::{ForceSums, StopCallback, check_stop};
+pub use super::sums::{never_stop, potential};
 use super::swept::PairSweep;
-use crate::method::{PhysicsFailure, refuse_several_ranks};
+use crate::method::{PhysicsFailure, reject_several_ranks};
 use crate::ranks::RankError;
 use crate::scene::Precision;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -59,7 +59,7 @@ impl GravityField {
     /// [`Failure`] if the bodies cannot be distributed to the number of ranks.
     pub fn new(scene: &NbodyScene, bodies: &PointMasses) -> Result<Self, PhysicsFailure> {
         if !matches!(scene.engine, ForceEngine::Fast | ForceEngine::Auto) {
-            refuse_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
+            reject_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
         }
         let arithmetic = match scene.arithmetic {
             ArithmeticKind::Exact => Arithmetic::Exact,
@@ -72,10 +72,10 @@ impl GravityField {
             (ForceEngine::Reference, _) => PairSummation::Reference,
             // The check has resolved `auto`.
             (ForceEngine::Fast | ForceEngine::Auto, Precision::F64) => {
-                PairSummation::Summed(summed::<f64>(scene, bodies, arithmetic)?)
+                PairSummation::Summed(ranked_sums::<f64>(scene, bodies, arithmetic)?)
             }
             (ForceEngine::Fast | ForceEngine::Auto, _) => {
-                PairSummation::Summed(summed::<f32>(scene, bodies, arithmetic)?)
+                PairSummation::Summed(ranked_sums::<f32>(scene, bodies, arithmetic)?)
             }
             (ForceEngine::Programs, Precision::F64) => {
                 PairSummation::Summed(Box::new(ShiftedPrograms::<f64>::new(softening, bodies, execution)))
@@ -122,7 +122,7 @@ impl GravityField {
     }
 
     /// Returns the field for one step; `observed` requests the energy at its end, `stop` may interrupt it.
-    pub fn asking<'a>(&'a mut self, observed: bool, stop: StopCallback<'a>) -> StepField<'a> {
+    pub fn for_step<'a>(&'a mut self, observed: bool, stop: StopCallback<'a>) -> StepField<'a> {
         StepField { attraction: self, observed, energy: None, stop }
     }
 
@@ -148,14 +148,14 @@ impl GravityField {
     }
 
     /// Direct sum in the order of the bodies.
-    fn written(
+    fn direct_sum(
         &self,
         position: &StateColumns,
         into: &mut StateColumns,
         stop: StopCallback<'_>,
     ) -> Result<(), ProgramError> {
         for body in 0..self.bodies {
-            go_on(stop)?;
+            check_stop(stop)?;
             let mut sum = [0.0; 3];
             for other in (0..self.bodies).filter(|&other| other != body) {
                 let square = self.square(position, body, other);
@@ -188,7 +188,7 @@ impl GravityField {
         let mut factorial = 1.0;
         for (order, into) in orders.iter_mut().enumerate().take(ORDERS) {
             factorial *= if order > 0 { order as f64 } else { 1.0 };
-            let of = |body: usize| go_on(stop).map(|()| self.coefficient(&path, body, order));
+            let of = |body: usize| check_stop(stop).map(|()| self.coefficient(&path, body, order));
             let found: Vec<[f64; 3]> = (0..count).into_par_iter().map(of).collect::<Result<_, _>>()?;
             for (body, found) in found.iter().enumerate() {
                 for axis in 0..3 {
@@ -257,7 +257,7 @@ impl StepField<'_> {
         attraction.evaluations += 1;
         let GravityField { pairs: PairSummation::Summed(sums), per_mass, constant, .. } = &mut **attraction
         else {
-            return attraction.written(position, into, stop).map(|()| None);
+            return attraction.direct_sum(position, into, stop).map(|()| None);
         };
         let energy = sums.sum(position, None, observed, stop)?;
         sums.over(per_mass, [Some(into), None]);
@@ -302,7 +302,7 @@ impl AccelerationField for StepField<'_> {
 mod tests {
     use super::super::options::StartKind;
     use super::super::schemes::AccelerationField as _;
-    use super::super::starts::bodies;
+    use super::super::starts::initial_bodies;
     use super::*;
     use crate::method::nbody::bodies::zeros;
     use stripmine_kernels::Execution;
@@ -312,11 +312,11 @@ mod tests {
     fn derivatives_match_the_motion() {
         let mut scene = NbodyScene { softening: 0.2, gravitational_constant: 3.7, ..NbodyScene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 12);
-        let of = bodies(&scene.start, 0.2, 1.0);
+        let of = initial_bodies(&scene.start, 0.2, 1.0);
         let all = PointMasses::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let mut field = GravityField::new(&scene, &all).unwrap();
         let mut orders: Vec<StateColumns> = (0..ORDERS).map(|_| zeros(all.entries())).collect();
-        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
+        field.for_step(false, &never_stop).derivatives(&all.position, &all.velocity, &mut orders).unwrap();
         // Along the Taylor path the acceleration has these derivatives.
         let h = 0.004;
         let at = |time: f64| {
@@ -335,16 +335,16 @@ mod tests {
         };
         let mut acceleration = |time: f64| {
             let mut into = zeros(all.entries());
-            field.asking(false, &never).acceleration(&at(time), &mut into).unwrap();
+            field.for_step(false, &never_stop).acceleration(&at(time), &mut into).unwrap();
             into
         };
         let seen: Vec<StateColumns> = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| acceleration(k * h)).to_vec();
         let mut fast = [zeros(all.entries()), zeros(all.entries())];
-        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut fast).unwrap();
+        field.for_step(false, &never_stop).derivatives(&all.position, &all.velocity, &mut fast).unwrap();
         let mut programs = [zeros(all.entries()), zeros(all.entries())];
         let mut field =
             GravityField::new(&NbodyScene { engine: ForceEngine::Programs, ..scene.clone() }, &all).unwrap();
-        field.asking(false, &never).derivatives(&all.position, &all.velocity, &mut programs).unwrap();
+        field.for_step(false, &never_stop).derivatives(&all.position, &all.velocity, &mut programs).unwrap();
         for axis in 0..3 {
             for body in 0..all.len() {
                 let a: Vec<f64> = seen.iter().map(|column| column[axis][body]).collect();
@@ -374,14 +374,14 @@ mod tests {
     fn force_engines_agree() {
         let mut scene = NbodyScene { softening: 0.05, gravitational_constant: 0.31, ..NbodyScene::default() };
         (scene.start.kind, scene.start.count) = (StartKind::Plummer, 301);
-        let of = bodies(&scene.start, 0.05, 1.0);
+        let of = initial_bodies(&scene.start, 0.05, 1.0);
         let all = PointMasses::new(of.iter().map(|&(m, r, v)| (r, v, m)));
         let found = |engine, execution, precision, arithmetic| {
             let scene = NbodyScene { engine, execution, precision, arithmetic, ..scene.clone() };
             let mut field = GravityField::new(&scene, &all).unwrap();
             let mut into = zeros(all.entries());
-            field.asking(false, &never).acceleration(&all.position, &mut into).unwrap();
-            (into, field.potential(&all.position, &never).unwrap())
+            field.for_step(false, &never_stop).acceleration(&all.position, &mut into).unwrap();
+            (into, field.potential(&all.position, &never_stop).unwrap())
         };
         let (expected, potential) =
             found(ForceEngine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);

@@ -107,7 +107,7 @@ impl CheckedNbody {
 
     fn memory(&self) -> MemoryForecast {
         let count = self.particles.len();
-        let [held, carried] = self.scene.scheme.held();
+        let [held, carried] = self.scene.scheme.stored_quantities();
         // Positions, velocities and masses, and the state before a step; the quantities of the scheme; scratch for the half-mass radius and the
         // nearest pair. Particles of the scene, of the run, and of two frames.
         let columns = 24 * (2 + 2 + held + carried) + 8 + 3 * 16 + 4;

@@ -5,9 +5,9 @@
 
 use super::bodies::{PointMasses, StateColumns};
 use super::scene::NbodyScene;
-use super::sums::{ForceSums, StopCallback, never};
+use super::sums::{ForceSums, StopCallback, never_stop};
 use super::swept::PairSweep;
-use crate::method::{Clock, DISMISSED, FailureKind, PhysicsFailure, ended};
+use crate::method::{Clock, DISMISSED, FailureKind, PhysicsFailure, rank_loss_failure};
 use crate::ranks::{self, Parcel, RankBackend, RankError, Ranks, local, numbers};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -24,14 +24,14 @@ const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 ///
 /// # Errors
 /// [`Failure`] if there are more ranks than bands. In a process that is not the first rank, the failure reports its dismissal.
-pub(super) fn summed<P: Precision>(
+pub(super) fn ranked_sums<P: Precision>(
     scene: &NbodyScene,
     bodies: &PointMasses,
     arithmetic: Arithmetic,
 ) -> Result<Box<dyn ForceSums>, PhysicsFailure> {
     let set = scene.instructions();
     let swept = || PairSweep::<P>::new(scene.softening, bodies, arithmetic, set);
-    let crew = ranks::crew();
+    let crew = ranks::current_backend();
     let (own, count) = (swept(), crew.count());
     if count == 1 {
         return Ok(Box::new(own));
@@ -51,7 +51,7 @@ pub(super) fn summed<P: Precision>(
             if ranks.rank() > 0 {
                 return Err(match serve(ranks.as_ref(), own, false) {
                     Ok(()) => PhysicsFailure::new(DISMISSED, "this rank is dismissed", ""),
-                    Err(lost) => ended(lost, Clock::default()),
+                    Err(lost) => rank_loss_failure(lost, Clock::default()),
                 });
             }
             (ranks, vec![])
@@ -104,7 +104,7 @@ enum RankCommand {
 /// Serves the first rank: a thread until this simulation ends, a process until no other follows.
 fn serve<P: Precision>(ranks: &dyn Ranks, mut own: PairSweep<P>, is_thread: bool) -> Result<(), RankError> {
     loop {
-        let answer = match ranks.tell_message(None) {
+        let answer = match ranks.broadcast_message(None) {
             Ok(Some(RankCommand::Sum { observed, position, velocity })) => {
                 band_sums(ranks, &mut own, observed, (&position, velocity.as_ref()))
             }
@@ -131,7 +131,7 @@ fn band_sums<P: Precision>(
     };
     let (position, velocity) = (columns(position)?, velocity.map(columns).transpose()?);
     let bands = bands_of(ranks.rank(), ranks.count(), own.bands());
-    let met = own.meet((&position, velocity.as_ref()), bands.clone(), observed, &never);
+    let met = own.visit_bands((&position, velocity.as_ref()), bands.clone(), observed, &never_stop);
     // The first rank has the same processor and law, so it fails for the same reason and reports it.
     met.map_err(|_| RankError::Ended(ranks.rank()))?;
     Ok(bands.map(|band| Parcel::of_numbers(own.band(band, velocity.is_some()))).collect())
@@ -139,7 +139,7 @@ fn band_sums<P: Precision>(
 
 impl<P: Precision> RankedSums<P> {
     /// Visits the pairs of all ranks and collects the sums of the other ranks.
-    fn met(
+    fn gather_band_sums(
         &mut self,
         (position, velocity): (&StateColumns, Option<&StateColumns>),
         observed: bool,
@@ -149,9 +149,13 @@ impl<P: Precision> RankedSums<P> {
         let ranks = ranks.as_ref().map_err(|lost| *lost)?;
         let sent = |columns: &StateColumns| Parcel::of_numbers(columns.iter().flatten().copied());
         let (from, rates) = (sent(position), velocity.map(sent));
-        ranks.tell_message(Some(Some(RankCommand::Sum { observed, position: from, velocity: rates })))?;
+        ranks.broadcast_message(Some(Some(RankCommand::Sum {
+            observed,
+            position: from,
+            velocity: rates,
+        })))?;
         let (count, bands, has_rates) = (ranks.count(), self.own.bands(), velocity.is_some());
-        let met = self.own.meet((position, velocity), bands_of(0, count, bands), observed, stop);
+        let met = self.own.visit_bands((position, velocity), bands_of(0, count, bands), observed, stop);
         let all = ranks.gather(Parcel::default())?;
         if met.is_err() {
             return Ok(met);
@@ -163,7 +167,7 @@ impl<P: Precision> RankedSums<P> {
                 return Err(RankError::Unreadable(rank));
             }
             for (band, bytes) in bands.zip(of_bands) {
-                self.own.put_band(band, has_rates, (rank, bytes))?;
+                self.own.store_band(band, has_rates, (rank, bytes))?;
             }
         }
         Ok(met)
@@ -178,7 +182,7 @@ impl<P: Precision> ForceSums for RankedSums<P> {
         observed: bool,
         stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
-        match self.met((position, velocity), observed, stop) {
+        match self.gather_band_sums((position, velocity), observed, stop) {
             Ok(met) => {
                 met?;
                 self.own.finish(velocity.is_some())
@@ -204,7 +208,7 @@ impl<P> Drop for RankedSums<P> {
     fn drop(&mut self) {
         if let Ok(ranks) = self.ranks.get_mut().unwrap_or_else(PoisonError::into_inner) {
             #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
-            let _ = ranks.tell_message(Some(Some(RankCommand::End)));
+            let _ = ranks.broadcast_message(Some(Some(RankCommand::End)));
         }
         self.threads.drain(..).for_each(|thread| _ = thread.join());
     }

@@ -2,7 +2,7 @@
 
 use super::bodies::{PointMasses, StateColumns};
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::sweep::all_pairs::{self, is_split, padding};
+use stripmine_kernels::sweep::all_pairs::{self, is_split, padding_position};
 
 /// Distance from the mean, in units of length, beyond which bodies count as escaped. Escaped bodies must not move the origin to where
 /// the number format is coarse for the others.
@@ -114,7 +114,7 @@ impl<P: Precision> RoundedBodies<P> {
     pub(super) const BYTES: usize = (if is_split::<P>() { 10 } else { 7 }) * P::BYTES;
 
     /// Converts positions and, if given, velocities.
-    pub(super) fn take(&mut self, position: &StateColumns, velocity: Option<&StateColumns>) {
+    pub(super) fn convert_bodies(&mut self, position: &StateColumns, velocity: Option<&StateColumns>) {
         let [count, entries] = self.sizes;
         if !is_split::<P>() {
             let velocity = velocity.into_iter().flatten();
@@ -131,7 +131,7 @@ impl<P: Precision> RoundedBodies<P> {
             self.place_about(position, medians(position, count));
         }
         for (n, entry) in (count..entries).enumerate() {
-            self.position[0][entry] = padding(n);
+            self.position[0][entry] = padding_position(n);
             self.rest[0][entry] = P::default();
         }
         // A common velocity has no effect on relative motion.

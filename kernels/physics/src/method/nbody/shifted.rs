@@ -128,7 +128,7 @@ impl<P: backend::Precision> ForceSums for ShiftedPrograms<P> {
         stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
         let count = self.count;
-        self.bodies.take(position, velocity);
+        self.bodies.convert_bodies(position, velocity);
         if velocity.is_some() && self.with_rates.is_empty() {
             self.with_rates = programs(self.bodies.units.length(self.softening), count);
         }

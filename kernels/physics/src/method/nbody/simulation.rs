@@ -7,14 +7,14 @@ use super::encounter::{NearestPair, NearestPairSearch};
 use super::field::GravityField;
 use super::quantities::{NbodyObservation, OBSERVABLES};
 use super::schemes::BodyIntegrator;
-use super::sums::{StopCallback, never};
+use super::sums::{StopCallback, never_stop};
 use super::watch::EnergyMonitor;
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::Elapsed;
 use crate::method::stepped::{Stepped, SteppedState, Stepwise};
 use crate::method::{
     Clock, Culprit, FailureKind, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot,
-    StartPurpose, ended,
+    StartPurpose, rank_loss_failure,
 };
 use crate::number::significant;
 use crate::particles::Particles;
@@ -89,11 +89,11 @@ pub(super) fn begin(
     let all = checked.particles.all();
     let bodies = PointMasses::new(all.iter().map(|body| (body.position, body.velocity, body.mass)));
     let mut field = GravityField::new(scene, &bodies)?;
-    let potential = field.potential(&bodies.position, &never)?;
+    let potential = field.potential(&bodies.position, &never_stop)?;
     let start = ConservedQuantities::of(&bodies, potential);
     let (mut watch, mut encounters) = (EnergyMonitor::new(&start), NearestPairSearch::default());
     let nearest = encounters.nearest(&bodies.position, bodies.len());
-    watch.look(start.energy(), nearest, 0);
+    watch.record_state(start.energy(), nearest, 0);
     let moved = SteppedBodies {
         elapsed: Elapsed::of_steps(scene.dt),
         bodies,
@@ -119,7 +119,7 @@ impl NbodySimulation {
     }
 
     /// True if a check is due after a number of steps.
-    fn is_look(&self, steps: u64) -> bool {
+    fn is_check_due(&self, steps: u64) -> bool {
         self.is_few() || steps.is_multiple_of(BETWEEN_LOOKS)
     }
 
@@ -133,7 +133,8 @@ impl NbodySimulation {
     /// Conserved quantities of the state, calculated once.
     fn conserved(&self) -> Result<ConservedQuantities, ProgramError> {
         let found = || {
-            let potential = self.state.field.borrow_mut().potential(&self.state.bodies.position, &never)?;
+            let potential =
+                self.state.field.borrow_mut().potential(&self.state.bodies.position, &never_stop)?;
             Ok(ConservedQuantities::of(&self.state.bodies, potential))
         };
         self.method.seen.borrow_mut().get_or_insert_with(found).clone()
@@ -159,7 +160,7 @@ impl NbodySimulation {
 
     /// Advances the bodies by a step, and calculates the conserved quantities if `observed`.
     fn attempt(&mut self, observed: bool, stop: StopCallback<'_>) -> Result<StepResult, ProgramError> {
-        let mut field = self.state.field.get_mut().asking(observed, stop);
+        let mut field = self.state.field.get_mut().for_step(observed, stop);
         self.state.scheme.step(&mut self.state.bodies, self.state.elapsed.dt, &mut field)?;
         let not_finite = self.state.bodies.not_finite();
         let seen = match observed && not_finite.is_none() {
@@ -175,13 +176,13 @@ impl NbodySimulation {
         let SavedStep { position, velocity, carried, evaluations } = &mut self.method.before;
         position.clone_from(&self.state.bodies.position);
         velocity.clone_from(&self.state.bodies.velocity);
-        let now = self.state.scheme.carried();
+        let now = self.state.scheme.carried_columns();
         carried.resize_with(now.len(), StateColumns::default);
         carried.iter_mut().zip(now).for_each(|(to, from)| to.clone_from(from));
         *evaluations = self.state.field.get_mut().evaluations;
     }
 
-    fn go_back(&mut self) {
+    fn restore_saved_step(&mut self) {
         let SavedStep { position, velocity, carried, evaluations } = &mut self.method.before;
         self.state.bodies.position.clone_from(position);
         self.state.bodies.velocity.clone_from(velocity);
@@ -200,13 +201,14 @@ impl NbodySimulation {
             "the positions or velocities of {count} bodies are not finite, first body {}",
             culprit.id
         );
-        let met = before
-            .map_or(String::new(), |before| format!("; one step before, {}", self.met(&before, "were")));
+        let met = before.map_or(String::new(), |before| {
+            format!("; one step before, {}", self.encounter_in_words(&before, "were"))
+        });
         self.of_encounter(FailureKind::NOT_FINITE, message + &met, before).of(count as u64, [culprit])
     }
 
     /// Describes a pair of bodies that `are` or `were` near each other.
-    fn met(&self, encounter: &NearestPair, are: &str) -> String {
+    fn encounter_in_words(&self, encounter: &NearestPair, are: &str) -> String {
         let NearestPair { bodies, distance, place: [x, y, z] } = *encounter;
         let [first, second] = bodies.map(|body| self.id(body));
         let place = format!("({}, {}, {})", significant(x, 6), significant(y, 6), significant(z, 6));
@@ -238,11 +240,12 @@ impl NbodySimulation {
     }
 
     /// Checks the conserved quantities against those at the start.
-    fn sound(&self, seen: &ConservedQuantities) -> Result<(), PhysicsFailure> {
+    fn check_conserved(&self, seen: &ConservedQuantities) -> Result<(), PhysicsFailure> {
         if !seen.is_finite() {
             let bodies = &self.state.bodies;
             let nearest = NearestPairSearch::default().nearest(&bodies.position, bodies.len());
-            let met = nearest.map_or(String::new(), |nearest| format!("; {}", self.met(&nearest, "are")));
+            let met = nearest
+                .map_or(String::new(), |nearest| format!("; {}", self.encounter_in_words(&nearest, "are")));
             let message = format!(
                 "the kinetic energy is {} and the potential energy {}{met}",
                 significant(seen.kinetic, 5),
@@ -269,7 +272,7 @@ impl NbodySimulation {
     }
 
     /// Current observation.
-    fn seen(&self) -> NbodyObservation {
+    fn nbody_observation(&self) -> NbodyObservation {
         let conserved = self.conserved_or_nothing();
         NbodyObservation {
             time: self.clock().time,
@@ -307,14 +310,14 @@ impl SteppedState for SteppedBodies {
     }
 
     fn check_ranks(&self) -> Result<(), PhysicsFailure> {
-        self.field.borrow().lost().map_or(Ok(()), |lost| Err(ended(lost, self.elapsed.clock())))
+        self.field.borrow().lost().map_or(Ok(()), |lost| Err(rank_loss_failure(lost, self.elapsed.clock())))
     }
 
     fn columns(&self) -> Vec<(String, CheckpointColumn)> {
         let count = self.bodies.len();
         let state = self.bodies.position.iter().chain(&self.bodies.velocity);
         let named = COLUMNS.iter().map(|name| (*name).to_owned());
-        let carried = self.scheme.carried();
+        let carried = self.scheme.carried_columns();
         let carried = carried.iter().enumerate().flat_map(|(order, columns)| {
             columns.iter().enumerate().map(move |(axis, column)| (format!("carried.{order}.{axis}"), column))
         });
@@ -335,9 +338,9 @@ impl Stepwise for NbodyRunState {
         if !is_few {
             run.keep();
         }
-        let stepped = match run.attempt(run.is_look(steps) || run.is_row(steps), &stop) {
+        let stepped = match run.attempt(run.is_check_due(steps) || run.is_row(steps), &stop) {
             Err(ProgramError::Interrupted) => {
-                run.go_back();
+                run.restore_saved_step();
                 return Ok(false);
             }
             stepped => stepped?,
@@ -347,27 +350,27 @@ impl Stepwise for NbodyRunState {
         if let Some((first, count)) = stepped.not_finite {
             return Err(run.not_finite(first, count));
         }
-        if run.is_look(steps) {
+        if run.is_check_due(steps) {
             run.method.last_encounter =
                 run.method.encounters.nearest(&run.state.bodies.position, run.state.bodies.len());
         }
         let Some(seen) = stepped.seen else { return Ok(true) };
-        run.sound(&seen)?;
-        if run.is_look(steps) {
-            run.method.watch.look(seen.energy(), run.method.last_encounter, steps);
+        run.check_conserved(&seen)?;
+        if run.is_check_due(steps) {
+            run.method.watch.record_state(seen.energy(), run.method.last_encounter, steps);
         }
         Ok(true)
     }
 
-    fn with_seen<R>(run: &Stepped<Self>, work: impl FnOnce(&NbodyObservation) -> R) -> R {
-        work(&run.seen())
+    fn with_observation<R>(run: &Stepped<Self>, work: impl FnOnce(&NbodyObservation) -> R) -> R {
+        work(&run.nbody_observation())
     }
 
     fn check(run: &Stepped<Self>) -> Result<(), PhysicsFailure> {
-        run.sound(&run.conserved()?)
+        run.check_conserved(&run.conserved()?)
     }
 
-    fn keep(run: &Stepped<Self>, kept: &mut Snapshot) {
+    fn save_into(run: &Stepped<Self>, kept: &mut Snapshot) {
         kept.columns.extend(run.method.watch.columns());
         kept.add_sum("energy", run.method.watch.start);
         kept.add_count(EVALUATIONS, run.state.field.borrow().evaluations);
@@ -416,14 +419,14 @@ impl Stepwise for NbodyRunState {
 
     fn warnings(run: &Stepped<Self>) -> Vec<RunWarning> {
         // A scheme with deliberate dissipation does not conserve energy.
-        let is_watched = !run.state.scheme.drains();
+        let is_watched = !run.state.scheme.is_dissipative();
         let warning = is_watched
             .then(|| run.method.watch.warning(run.now(), run.state.elapsed.dt, |body| run.id(body)));
         warning.flatten().into_iter().collect()
     }
 
     fn in_words(run: &Stepped<Self>) -> String {
-        let seen = run.seen();
+        let seen = run.nbody_observation();
         format!(
             "{} bodies; energy error {}, virial ratio {:.3}, momentum {}",
             run.state.bodies.len(),

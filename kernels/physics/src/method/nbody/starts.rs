@@ -12,16 +12,16 @@ use stripmine_kernels::noise::{RandomPurpose, Stream};
 pub(crate) type InitialBody = (f64, [f64; 3], [f64; 3]);
 
 /// Creates the bodies of a start, with softening ε (length) and gravitational constant G.
-pub fn bodies(start: &NbodyStart, softening: f64, constant: f64) -> Vec<InitialBody> {
+pub fn initial_bodies(start: &NbodyStart, softening: f64, constant: f64) -> Vec<InitialBody> {
     let root = constant.sqrt();
     match start.kind {
-        StartKind::Kepler => faster(kepler(start.eccentricity, start.mass_ratio), root),
-        StartKind::FigureEight => faster(figure_eight(), root),
+        StartKind::Kepler => scale_velocities(kepler(start.eccentricity, start.mass_ratio), root),
+        StartKind::FigureEight => scale_velocities(figure_eight(), root),
         StartKind::List => {
             let body = |row: &Vec<f64>| (row[0], [row[1], row[2], row[3]], [row[4], row[5], row[6]]);
             start.bodies.iter().map(body).collect()
         }
-        StartKind::Plummer => centred(faster(plummer(0..start.count, start.seed), root)),
+        StartKind::Plummer => centred(scale_velocities(plummer(0..start.count, start.seed), root)),
         StartKind::Sphere | StartKind::Shell => {
             let mut bodies = centred(sphere(start));
             stir(&mut bodies, start, softening, constant);
@@ -32,7 +32,7 @@ pub fn bodies(start: &NbodyStart, softening: f64, constant: f64) -> Vec<InitialB
 }
 
 /// Multiplies all velocities by a factor.
-fn faster(mut bodies: Vec<InitialBody>, times: f64) -> Vec<InitialBody> {
+fn scale_velocities(mut bodies: Vec<InitialBody>, times: f64) -> Vec<InitialBody> {
     bodies.iter_mut().for_each(|(.., velocity)| *velocity = velocity.map(|v| times * v));
     bodies
 }
@@ -204,7 +204,7 @@ mod tests {
     /// Plummer's sphere has the potential energy −3π/32, virial equilibrium, and half of its mass within 1.305.
     #[test]
     fn a_plummer_sphere_is_in_equilibrium() {
-        let bodies = bodies(&start(StartKind::Plummer, 4000), 0.0, 1.0);
+        let bodies = initial_bodies(&start(StartKind::Plummer, 4000), 0.0, 1.0);
         let (kinetic, potential) = (kinetic(&bodies), potential(&bodies, 0.0));
         assert!((potential / (-3.0 * PI / 32.0) - 1.0).abs() < 0.04, "{potential}");
         assert!((kinetic / -potential - 0.5).abs() < 0.02, "{kinetic} {potential}");
@@ -221,12 +221,12 @@ mod tests {
             let energy = kinetic(&bodies) + potential(&bodies, 0.0);
             assert!((energy / (-0.5 * bodies[0].0 * bodies[1].0) - 1.0).abs() < 1e-13);
         }
-        let sphere = bodies(&NbodyStart { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0, 1.0);
+        let sphere = initial_bodies(&NbodyStart { virial: 0.5, ..start(StartKind::Sphere, 3000) }, 0.0, 1.0);
         let potential = potential(&sphere, 0.0);
         assert!((potential / -0.6 - 1.0).abs() < 0.03, "{potential}");
         assert!((kinetic(&sphere) / -potential - 0.5).abs() < 1e-3);
         for kind in [StartKind::Plummer, StartKind::Shell, StartKind::TwoClusters, StartKind::FigureEight] {
-            let bodies = bodies(&start(kind, 500), 0.0, 1.0);
+            let bodies = initial_bodies(&start(kind, 500), 0.0, 1.0);
             let momentum = [0, 1, 2].map(|axis| bodies.iter().map(|(m, _, v)| m * v[axis]).sum::<f64>());
             assert!(momentum.iter().all(|p| p.abs() < 1e-15), "{kind:?} {momentum:?}");
             assert!((bodies.iter().map(|(m, ..)| m).sum::<f64>() - 1.0).abs() < 1e-12);
@@ -238,7 +238,7 @@ mod tests {
     fn clusters_and_seeds_share_no_body() {
         let mut seen: Vec<[f64; 6]> = vec![];
         for seed in [0, 1, 2, 3, u64::MAX] {
-            let all = bodies(&NbodyStart { seed, ..start(StartKind::TwoClusters, 64) }, 0.0, 1.0);
+            let all = initial_bodies(&NbodyStart { seed, ..start(StartKind::TwoClusters, 64) }, 0.0, 1.0);
             for cluster in all.chunks(32) {
                 let state: Vec<[f64; 6]> =
                     cluster.iter().map(|(_, [x, y, z], [u, v, w])| [*x, *y, *z, *u, *v, *w]).collect();
@@ -261,12 +261,12 @@ mod tests {
         for kind in [StartKind::Kepler, StartKind::FigureEight, StartKind::Plummer, StartKind::Sphere] {
             let start = NbodyStart { virial: 0.5, ..start(kind, 100) };
             let [one, other] = [1.0, 6.6743e-11].map(|constant| {
-                let bodies = bodies(&start, 0.0, constant);
+                let bodies = initial_bodies(&start, 0.0, constant);
                 kinetic(&bodies) / (constant * potential(&bodies, 0.0))
             });
             assert!((other / one - 1.0).abs() < 1e-12, "{kind:?}: {one} {other}");
         }
         let expanding = NbodyStart { expansion: 2.0, ..start(StartKind::Shell, 10) };
-        assert_eq!(bodies(&expanding, 0.0, 1.0), bodies(&expanding, 0.0, 6.6743e-11));
+        assert_eq!(initial_bodies(&expanding, 0.0, 1.0), initial_bodies(&expanding, 0.0, 6.6743e-11));
     }
 }

@@ -9,7 +9,7 @@ use stripmine_kernels::isa::ProgramError;
 pub(crate) type StopCallback<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// Callback that never stops a sum.
-pub fn never() -> bool {
+pub fn never_stop() -> bool {
     false
 }
 
@@ -37,7 +37,7 @@ pub(crate) trait ForceSums: Send + Sync {
 }
 
 /// Returns an error if the sum must stop.
-pub(super) fn go_on(stop: StopCallback<'_>) -> Result<(), ProgramError> {
+pub(super) fn check_stop(stop: StopCallback<'_>) -> Result<(), ProgramError> {
     if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
 }
 
@@ -53,7 +53,7 @@ pub fn potential(
 ) -> Result<f64, ProgramError> {
     let mut energy = 0.0;
     for body in 0..mass.len() {
-        go_on(stop)?;
+        check_stop(stop)?;
         for other in 0..body {
             let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
             energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();

@@ -9,7 +9,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::gravity::Gravity;
-use stripmine_kernels::sweep::all_pairs::{AllPairs, AllPairsOptions, Arithmetic, padded};
+use stripmine_kernels::sweep::all_pairs::{AllPairs, AllPairsOptions, Arithmetic, padded_length};
 
 /// Sweep over all pairs in precision `P`.
 pub(super) struct PairSweep<P> {
@@ -47,7 +47,9 @@ impl<P: backend::Precision> PairSweep<P> {
     /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { AllPairs::<P, 6>::bytes(count) } else { 0 };
-        padded(count) * (RoundedBodies::<P>::BYTES + 6 * P::BYTES) + AllPairs::<P, 3>::bytes(count) + rates
+        padded_length(count) * (RoundedBodies::<P>::BYTES + 6 * P::BYTES)
+            + AllPairs::<P, 3>::bytes(count)
+            + rates
     }
 }
 
@@ -66,22 +68,22 @@ impl<P: backend::Precision> PairSweep<P> {
     ///
     /// # Errors
     /// As [`sum`](Sums::sum).
-    pub(super) fn meet(
+    pub(super) fn visit_bands(
         &mut self,
         (position, velocity): (&StateColumns, Option<&StateColumns>),
         bands: Range<usize>,
         observed: bool,
         stop: StopCallback<'_>,
     ) -> Result<(), ProgramError> {
-        self.bodies.take(position, velocity);
+        self.bodies.convert_bodies(position, velocity);
         let PairSweep { softening, count, set, arithmetic, forces, rates, bodies, .. } = self;
         let (softening, bodies) = (*softening, bodies.bodies());
         let manner = AllPairsOptions { observed, arithmetic: *arithmetic, set: *set, interrupted: stop };
         match velocity {
-            None => forces.meet(&Gravity::<false> { softening }, &bodies, bands, &manner),
+            None => forces.sweep_bands(&Gravity::<false> { softening }, &bodies, bands, &manner),
             Some(_) => {
                 let rates = rates.get_or_insert_with(|| AllPairs::new(*count));
-                rates.meet(&Gravity::<true> { softening }, &bodies, bands, &manner)
+                rates.sweep_bands(&Gravity::<true> { softening }, &bodies, bands, &manner)
             }
         }
     }
@@ -125,7 +127,7 @@ impl<P: backend::Precision> PairSweep<P> {
     ///
     /// # Errors
     /// [`RankError`] if the number of values differs.
-    pub(super) fn put_band(
+    pub(super) fn store_band(
         &mut self,
         number: usize,
         has_rates: bool,
@@ -158,7 +160,7 @@ impl<P: backend::Precision> ForceSums for PairSweep<P> {
         observed: bool,
         stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
-        self.meet((position, velocity), 0..self.bands(), observed, stop)?;
+        self.visit_bands((position, velocity), 0..self.bands(), observed, stop)?;
         self.finish(velocity.is_some())
     }
 

@@ -1,7 +1,7 @@
 //! Tests of running simulations of bodies: failures, warnings and counts.
 
 use super::bodies::StateColumns;
-use super::checked::{CheckedNbody, checked};
+use super::checked::{CheckedNbody, check_nbody_scene};
 use super::field::PairSummation;
 use super::keys::VOCABULARY;
 use super::schemes::SchemeName;
@@ -16,7 +16,7 @@ use stripmine_kernels::isa::ProgramError;
 
 fn scene(preset: &str, sets: &[&str]) -> CheckedNbody {
     let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
-    checked(SceneValues::load(preset, &sets, &[&VOCABULARY]).unwrap()).unwrap()
+    check_nbody_scene(SceneValues::load(preset, &sets, &[&VOCABULARY]).unwrap()).unwrap()
 }
 
 fn started(preset: &str, sets: &[&str]) -> NbodySimulation {
@@ -64,7 +64,7 @@ where
 }
 
 /// Wraps the sums of a simulation.
-fn between<F>(running: &mut NbodySimulation, with: F)
+fn wrap_sums<F>(running: &mut NbodySimulation, with: F)
 where
     F: Fn(
             Option<&mut dyn ForceSums>,
@@ -90,7 +90,7 @@ where
 fn failing_sweeps_write_no_row() {
     let mut running = started("plummer", &["particles.count=65"]);
     advance(&mut running, 1).unwrap();
-    between(&mut running, |_, _, _, _, _| Err(ProgramError::EmptyStrip));
+    wrap_sums(&mut running, |_, _, _, _, _| Err(ProgramError::EmptyStrip));
     let failure = running.check().unwrap_err();
     assert_eq!(failure.kind, FailureKind::MACHINE);
     assert!(running.observe()[2].is_nan(), "{:?}", running.observe());
@@ -103,7 +103,7 @@ fn rows_need_no_extra_sweep() {
     let mut running = started("plummer", &["particles.count=100", "run.thermo_every=8"]);
     let sweeps = Arc::new([0, 0].map(AtomicUsize::new));
     let counted = Arc::clone(&sweeps);
-    between(&mut running, move |inner, position, velocity, observed, stop| {
+    wrap_sums(&mut running, move |inner, position, velocity, observed, stop| {
         counted[usize::from(observed)].fetch_add(1, Ordering::Relaxed);
         inner.unwrap().sum(position, velocity, observed, stop)
     });
@@ -119,7 +119,7 @@ fn rows_need_no_extra_sweep() {
         started("plummer", &["particles.count=100", "run.thermo_every=8", "integrator.kind=hermite-4"]);
     let rows = Arc::new(AtomicUsize::new(0));
     let counted = Arc::clone(&rows);
-    between(&mut running, move |inner, position, velocity, observed, stop| {
+    wrap_sums(&mut running, move |inner, position, velocity, observed, stop| {
         counted.fetch_add(usize::from(observed), Ordering::Relaxed);
         inner.unwrap().sum(position, velocity, observed, stop)
     });
@@ -152,7 +152,7 @@ fn interrupted_steps_are_discarded() {
                 let (before, clock) = (running.snapshot(), running.clock());
                 let interrupted = Arc::new(AtomicBool::new(false));
                 let (asked, flag) = (AtomicUsize::new(0), Arc::clone(&interrupted));
-                between(&mut running, move |inner, position, velocity, observed, stop| {
+                wrap_sums(&mut running, move |inner, position, velocity, observed, stop| {
                     let stop = || {
                         flag.fetch_or(asked.fetch_add(1, Ordering::Relaxed) == most, Ordering::Relaxed);
                         stop()

@@ -40,7 +40,7 @@ impl EnergyMonitor {
     }
 
     /// Records a state after some steps.
-    pub(super) fn look(&mut self, energy: f64, encounter: Option<NearestPair>, steps: u64) {
+    pub(super) fn record_state(&mut self, energy: f64, encounter: Option<NearestPair>, steps: u64) {
         if (energy - self.start).abs() > (self.worst.0 - self.start).abs() {
             self.worst = (energy, steps);
         }

@@ -36,30 +36,30 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Returns the position (length) of a disc at `place` relative to its cell.
-    pub(super) fn seen_from_origin(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
+    pub(super) fn absolute_position(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
         self.position_in_cell(self.search.cells().cell(disc).unwrap_or_default(), place)
     }
 
     /// Returns the cell of a disc at a position (length), and the position relative to its centre.
     pub(super) fn locate(&self, disc: usize, position: [f64; 2]) -> Result<CellMove, PhysicsFailure> {
-        let from = self.seen_from_first_cell(disc, position);
-        self.in_its_cell(from).ok_or_else(|| self.stray(from, 1))
+        let from = self.relative_to_first_cell(disc, position);
+        self.in_containing_cell(from).ok_or_else(|| self.stray(from, 1))
     }
 
     /// Returns the row of a position (length); none outside all cells.
     pub(super) fn row_at(&self, position: [f64; 2]) -> Option<usize> {
-        Some(self.in_its_cell(self.seen_from_first_cell(0, position))?.cell[1])
+        Some(self.in_containing_cell(self.relative_to_first_cell(0, position))?.cell[1])
     }
 
     /// Returns a disc at a position (length), relative to the first cell.
-    fn seen_from_first_cell(&self, disc: usize, position: [f64; 2]) -> CellMove {
+    fn relative_to_first_cell(&self, disc: usize, position: [f64; 2]) -> CellMove {
         let frame = self.search.cells().grid().frame;
         let place = [0, 1].map(|axis| position[axis] - (frame.origin[axis] + 0.5 * frame.edge[axis]));
         CellMove { disc, cell: [0, 0], place, periods: [0.0; 2] }
     }
 
     /// Returns a disc relative to the cell that contains it, from a position that may be outside the given cell; none if no cell contains it.
-    fn in_its_cell(&self, from: CellMove) -> Option<CellMove> {
+    fn in_containing_cell(&self, from: CellMove) -> Option<CellMove> {
         let CellMove { cell, place, .. } = from;
         let CellGrid { frame, counts, periodic } = self.search.cells().grid();
         let mut to = from;
@@ -90,20 +90,20 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Updates the cells after a pass: walls, discs beyond their limit, halo, lists.
-    pub(super) fn keep_cells(&mut self, left: &[u32]) -> Result<(), PhysicsFailure> {
+    pub(super) fn update_cells_and_lists(&mut self, left: &[u32]) -> Result<(), PhysicsFailure> {
         if self.search.lists().is_some() {
             if self.is_stale(left)? {
-                self.list_again()?;
+                self.rebuild_lists()?;
             }
             return Ok(());
         }
-        self.keep_in_cells(left).map(drop)
+        self.update_cells(left).map(drop)
     }
 
     /// Returns the current positions of moving walls.
     fn walls_now(&mut self) -> Result<Vec<CellMove>, PhysicsFailure> {
         let Some(prescribed) = self.prescribed() else { return Ok(vec![]) };
-        self.give_walls_their_velocity();
+        self.update_wall_velocity();
         let now = |disc: usize| {
             let at = self.start.all()[self.state.number(disc)].position;
             let [dx, dy] = prescribed.displacement;
@@ -113,11 +113,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Updates the cells where there are no lists.
-    pub(super) fn keep_in_cells(&mut self, left: &[u32]) -> Result<Vec<CellChange>, PhysicsFailure> {
+    pub(super) fn update_cells(&mut self, left: &[u32]) -> Result<Vec<CellChange>, PhysicsFailure> {
         let walls = self.walls_now()?;
         let left = left.iter().map(|&disc| disc as usize);
         let left = left.chain(self.neighbours().filter(|&disc| !self.stays_in_cell(disc)));
-        let mut moves = self.changes_of(vec![self.look(left)])?;
+        let mut moves = self.changes_of(vec![self.search_cells(left)])?;
         self.changes += moves.len();
         moves.extend(walls);
         let moved = self.change_cells(&moves)?;
@@ -163,12 +163,12 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Searches the cells that contain some discs.
-    pub(super) fn look(&self, discs: impl Iterator<Item = usize>) -> CellSearchResult {
+    pub(super) fn search_cells(&self, discs: impl Iterator<Item = usize>) -> CellSearchResult {
         let mut looked = CellSearchResult::default();
         for disc in discs {
             let cell = self.search.cells().cell(disc).unwrap_or_default();
             let from = CellMove { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
-            match self.in_its_cell(from) {
+            match self.in_containing_cell(from) {
                 Some(to) if to == from => {}
                 Some(to) => looked.moves.push(to),
                 // Its own rank reports it.
@@ -218,11 +218,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Rebuilds the lists.
-    pub(super) fn list_again(&mut self) -> Result<Vec<CellChange>, PhysicsFailure> {
-        let looked = over_pieces(0..self.state.len(), |discs| self.look(discs));
+    pub(super) fn rebuild_lists(&mut self) -> Result<Vec<CellChange>, PhysicsFailure> {
+        let looked = over_pieces(0..self.state.len(), |discs| self.search_cells(discs));
         let moves = self.changes_of(looked)?;
         let moved = self.change_cells(&moves)?;
-        self.put_in_order();
+        self.sort_by_cell();
         Ok(moved)
     }
 
@@ -253,13 +253,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     pub(super) fn is_outside(&self, disc: usize) -> bool {
         let cell = self.search.cells().cell(disc).unwrap_or_default();
         let from = CellMove { disc, cell, place: self.state.place(disc), periods: [0.0; 2] };
-        self.in_its_cell(from).is_none()
+        self.in_containing_cell(from).is_none()
     }
 
     /// Moves discs into their new cells and returns the changes of this rank's discs. If two discs want an exclusive cell, none is moved.
     pub(super) fn change_cells(&mut self, moves: &[CellMove]) -> Result<Vec<CellChange>, PhysicsFailure> {
         if self.search.cells().is_exclusive() {
-            self.refuse_conflicts(moves)?;
+            self.reject_conflicts(moves)?;
         }
         let others = self.neighbours();
         let own = moves.iter().filter(|to| !others.contains(&to.disc));
@@ -286,7 +286,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Fails if two discs want one cell.
-    fn refuse_conflicts(&self, moves: &[CellMove]) -> Result<(), PhysicsFailure> {
+    fn reject_conflicts(&self, moves: &[CellMove]) -> Result<(), PhysicsFailure> {
         let mut targets: Vec<([usize; 2], usize)> = moves.iter().map(|to| (to.cell, to.disc)).collect();
         targets.sort_unstable();
         let mut moving: Vec<usize> = moves.iter().map(|to| to.disc).collect();

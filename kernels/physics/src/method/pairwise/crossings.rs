@@ -81,7 +81,7 @@ impl Crossings {
     ///
     /// # Errors
     /// Says which column is missing, has the wrong length, or holds a value that is not a count.
-    pub fn take_up(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
+    pub fn restore_counts(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         let axes = if self.is_followed() { 0..2 } else { 0..0 };
         for axis in axes {
             let column = find_column::<f64>(columns, CROSSINGS[axis], self.counts.len())?;

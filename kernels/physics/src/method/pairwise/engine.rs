@@ -18,7 +18,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{AlignedColumn, ProgramError};
 use stripmine_kernels::law::ObservationRequest;
 use stripmine_kernels::sweep::fast::{PassReport, SweepReport};
-use stripmine_kernels::{alone_if, keep_awake, over_parts, put_in_order};
+use stripmine_kernels::{keep_awake, over_parts, reorder_into, single_threaded_if};
 
 /// Number of discs below which one thread does all the work, because a step is over before other threads start. Measured on two cores: 2000 discs
 /// took twice as long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
@@ -71,7 +71,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         let elapsed = Elapsed::new(system.dt, crossings);
         let mut engine =
             PairEngine::of((dynamics, system, set), search, Arc::new(particles), members, elapsed);
-        engine.take_their_places()?;
+        engine.place_discs()?;
         Ok(engine)
     }
 
@@ -100,12 +100,12 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             awaits_forces: false,
             boundary_candidates: vec![],
         };
-        engine.give_walls_their_velocity();
+        engine.update_wall_velocity();
         engine
     }
 
     /// Replaces the members; the new ones are at the start and not yet in cells.
-    pub(super) fn hold(&mut self, members: Members, search: Q) {
+    pub(super) fn replace_members(&mut self, members: Members, search: Q) {
         let carried = self.dynamics.carried(self.system.dt);
         [self.sums[0], self.sums[1], self.sums[2], self.spare] = sums_of(members.numbers.len());
         self.state = MovingDiscs::new(&self.system, &carried, &self.start, members);
@@ -113,21 +113,23 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.changes = 0;
         self.awaits_forces = false;
         self.boundary_candidates.clear();
-        self.give_walls_their_velocity();
+        self.update_wall_velocity();
     }
 
     /// Places all discs in the cells of their start positions.
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub(super) fn take_their_places(&mut self) -> Result<(), PhysicsFailure> {
+    pub(super) fn place_discs(&mut self) -> Result<(), PhysicsFailure> {
         let located = |discs: Range<usize>| -> Result<Vec<CellMove>, PhysicsFailure> {
-            discs.map(|disc| self.locate(disc, self.start.all()[self.state.number(disc)].place())).collect()
+            discs
+                .map(|disc| self.locate(disc, self.start.all()[self.state.number(disc)].planar_position()))
+                .collect()
         };
-        let moves = alone_if(self.is_small(), || over_parts(0..self.state.len(), located));
+        let moves = single_threaded_if(self.is_small(), || over_parts(0..self.state.len(), located));
         let moves: Vec<Vec<CellMove>> = moves.into_iter().collect::<Result<_, _>>()?;
         self.change_cells(&moves.concat())?;
-        self.put_in_order();
+        self.sort_by_cell();
         Ok(())
     }
 
@@ -141,14 +143,14 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.dynamics.prescribed(self.elapsed.time())
     }
 
-    pub(super) fn give_walls_their_velocity(&mut self) {
+    pub(super) fn update_wall_velocity(&mut self) {
         let velocity = self.prescribed().unwrap_or_default().velocity;
         self.state.set_wall_velocity(velocity);
     }
 
     /// Sorts the discs by cell, so that neighbours are close in memory, and rebuilds the lists; returns the previous index of each disc. No sum
     /// depends on the order.
-    pub(super) fn put_in_order(&mut self) -> Vec<u32> {
+    pub(super) fn sort_by_cell(&mut self) -> Vec<u32> {
         let (moving, grains) = (self.state.moving(), self.state.grains());
         let mut order = self.search.cells().order();
         if moving < order.len() {
@@ -159,7 +161,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
         for sum in &mut self.sums {
-            put_in_order(&mut self.spare, sum, &order);
+            reorder_into(&mut self.spare, sum, &order);
             std::mem::swap(sum, &mut self.spare);
         }
         self.search.make_lists(&self.state);
@@ -169,22 +171,22 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         order
     }
 
-    pub(super) fn moved_on(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
-        self.put_in_order_if_due();
+    pub(super) fn advance_positions(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
+        self.sort_if_due();
         let passed = self.pass(0..self.state.moving())?;
-        self.has_passed();
+        self.finish_advance();
         let mut timings = self.elapsed.timings;
-        let kept = timings.time(Phase::Index, || keep_awake(|| self.keep_cells(&passed.left)));
+        let kept = timings.time(Phase::Index, || keep_awake(|| self.update_cells_and_lists(&passed.left)));
         self.elapsed.timings = timings;
         kept?;
         Ok(passed.far)
     }
 
     /// Sorts the discs if many have changed cells since the last sort.
-    pub(super) fn put_in_order_if_due(&mut self) {
+    pub(super) fn sort_if_due(&mut self) {
         if self.system.sort == SortSchedule::EveryStep || self.changes > self.state.grains() / 4 {
             let mut timings = self.elapsed.timings;
-            timings.time(Phase::Index, || _ = self.put_in_order());
+            timings.time(Phase::Index, || _ = self.sort_by_cell());
             self.elapsed.timings = timings;
         }
     }
@@ -200,7 +202,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Records that all discs have been advanced by one step.
-    pub(super) fn has_passed(&mut self) {
+    pub(super) fn finish_advance(&mut self) {
         self.elapsed.steps += 1;
         self.awaits_forces = true;
     }
@@ -213,7 +215,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Fails at pairs with a grain whose force is not finite.
-    pub(super) fn refuse_not_finite(&self, met: &SweepReport) -> Result<(), PhysicsFailure> {
+    pub(super) fn reject_not_finite_forces(&self, met: &SweepReport) -> Result<(), PhysicsFailure> {
         let grains = self.state.grains();
         let pairs = met.not_finite.iter().map(|pair| pair.map(|disc| disc as usize));
         // Two fixed discs have no effective mass: their force is meaningless.
@@ -280,7 +282,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> NameableDiscs for PairEngi
     }
 
     fn position(&self, disc: usize) -> [f64; 2] {
-        self.seen_from_origin(disc, self.state.place(disc))
+        self.absolute_position(disc, self.state.place(disc))
     }
 
     fn velocity(&self, disc: usize) -> [f64; 2] {

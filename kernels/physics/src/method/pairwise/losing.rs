@@ -26,10 +26,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// # Errors
     /// [`Failure`] if a particle belongs to no cell.
     pub(super) fn settle_all(&mut self) -> Result<Vec<CellChange>, PhysicsFailure> {
-        let looked = self.look(0..self.state.len());
+        let looked = self.search_cells(0..self.state.len());
         let moves = self.changes_of(vec![looked])?;
         let moved = self.change_cells(&moves)?;
-        self.put_in_order();
+        self.sort_by_cell();
         self.awaits_forces = true;
         Ok(moved)
     }

@@ -19,7 +19,7 @@ use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::sweep::fast::{DiscColumns, SENTINELS, SweepReport};
-use stripmine_kernels::{alone_if, in_parts, in_pieces, over_parts};
+use stripmine_kernels::{in_parts, in_pieces, over_parts, single_threaded_if};
 
 /// All discs at the end of a step, one entry for each disc in memory order, followed by sentinels.
 pub(super) struct CorrectedDiscs {
@@ -34,7 +34,7 @@ pub(super) struct CorrectedDiscs {
 impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Computes the discs at the end of the step.
     pub(super) fn corrected_discs(&self) -> CorrectedDiscs {
-        alone_if(self.is_small(), || {
+        single_threaded_if(self.is_small(), || {
             let mut moved = [0.0; 2];
             let mut column = |freedom: usize| {
                 let [mut value, mut rate] = self.corrected_column(freedom);
@@ -56,7 +56,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Returns the index in memory of each of the scene's discs.
-    pub(super) fn disc_of_each(&self) -> Vec<u32> {
+    pub(super) fn indices_by_number(&self) -> Vec<u32> {
         let mut disc = vec![0; self.start.len()];
         self.state.numbers().iter().zip(0..).for_each(|(&number, at)| disc[number as usize] = at);
         disc
@@ -71,11 +71,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Computes the particles in the scene's order at the end of the step, on all threads. Handles one degree of freedom after the other, so that few
     /// columns are in memory at a time.
-    pub(super) fn standing(&self) -> Particles {
-        let (grains, discs) = (self.start.grain_count(), self.disc_of_each());
+    pub(super) fn step_end_particles(&self) -> Particles {
+        let (grains, discs) = (self.start.grain_count(), self.indices_by_number());
         let walls = in_space(self.prescribed().unwrap_or_default().velocity);
         let mut particles = Particles::clone(&self.start);
-        alone_if(self.is_small(), || {
+        single_threaded_if(self.is_small(), || {
             for freedom in 0..3 {
                 let turns = freedom < self.system.freedoms;
                 let [values, rates] = if turns { self.corrected_column(freedom) } else { [vec![], vec![]] };
@@ -86,7 +86,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
                             [&values, &rates].map(|column| column.get(disc).copied().unwrap_or(0.0));
                         match freedom {
                             0 | 1 => {
-                                particle.position[freedom] = self.seen_from_origin(disc, [value; 2])[freedom]
+                                particle.position[freedom] = self.absolute_position(disc, [value; 2])[freedom]
                             }
                             _ if number < grains => particle.angle = value,
                             _ => {}
@@ -104,12 +104,12 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Computes positions alone, inside the box and in single precision, in the scene's order: first in memory order on all threads, then sorted.
-    pub(super) fn standing_places(&self) -> Vec<[f32; 3]> {
+    pub(super) fn step_end_positions(&self) -> Vec<[f32; 3]> {
         let mut standing = vec![[0.0; 2]; self.state.len()];
-        alone_if(self.is_small(), || {
+        single_threaded_if(self.is_small(), || {
             in_pieces(&mut standing, |first, piece| {
                 let discs = first..first + piece.len();
-                self.each_standing(discs, |disc, place, _| {
+                self.for_each_at_step_end(discs, |disc, place, _| {
                     piece[disc - first] = self.system.domain.wrapped(place).map(|x| x as f32);
                 });
             });
@@ -123,13 +123,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Returns the periods each disc has crossed along x and y since the start relative to its image inside the box, in the scene's order; empty if a
     /// periodic side is not counted.
-    pub(super) fn standing_images(&self) -> Vec<[i32; 2]> {
+    pub(super) fn step_end_images(&self) -> Vec<[i32; 2]> {
         let (domain, crossings) = (&self.system.domain, &self.elapsed.crossings);
         if !crossings.follows(domain) {
             return vec![];
         }
         let mut images = vec![[0; 2]; self.start.len()];
-        self.each_standing(0..self.state.len(), |disc, place, _| {
+        self.for_each_at_step_end(0..self.state.len(), |disc, place, _| {
             let number = self.state.number(disc);
             images[number] = crossings.image(domain, number, place);
         });
@@ -137,7 +137,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     /// Passes each disc of a range in memory, its position (length) and velocity (length/time), without storing columns of them.
-    pub(super) fn each_standing(&self, discs: Range<usize>, mut to: impl FnMut(usize, [f64; 2], [f64; 2])) {
+    pub(super) fn for_each_at_step_end(
+        &self,
+        discs: Range<usize>,
+        mut to: impl FnMut(usize, [f64; 2], [f64; 2]),
+    ) {
         const AT_A_TIME: usize = 128;
         for first in discs.clone().step_by(AT_A_TIME) {
             let count = AT_A_TIME.min(discs.end - first);
@@ -146,7 +150,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             self.correct(0, first, [&mut x[..count], &mut vx[..count]]);
             self.correct(1, first, [&mut y[..count], &mut vy[..count]]);
             for at in 0..count {
-                let place = self.seen_from_origin(first + at, [x[at], y[at]]);
+                let place = self.absolute_position(first + at, [x[at], y[at]]);
                 to(first + at, place, [vx[at], vy[at]]);
             }
         }
@@ -159,20 +163,20 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         scenery: &SceneProperties,
         work: &GravityWork<'_>,
     ) -> GrainSums {
-        let discs = self.disc_of_each();
-        alone_if(self.is_small(), || {
+        let discs = self.indices_by_number();
+        single_threaded_if(self.is_small(), || {
             sums_of_grains(self.start.grains(), (scenery, work), |number| {
-                self.standing_disc(corrected, discs[number] as usize)
+                self.step_end_disc(corrected, discs[number] as usize)
             })
         })
     }
 
     /// Returns a disc at the end of the step.
-    pub(super) fn standing_disc(&self, corrected: &CorrectedDiscs, disc: usize) -> StepEndDisc {
+    pub(super) fn step_end_disc(&self, corrected: &CorrectedDiscs, disc: usize) -> StepEndDisc {
         let [place, velocity] = [&corrected.place, &corrected.velocity]
             .map(|columns| columns.each_ref().map(|along| along[disc]));
         let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
-        StepEndDisc { position: self.seen_from_origin(disc, place), velocity, omega }
+        StepEndDisc { position: self.absolute_position(disc, place), velocity, omega }
     }
 
     /// Computes the sums over the contacts.
@@ -183,7 +187,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Sweeps all pairs at the end of the step.
     pub(super) fn contacts_met(&self, corrected: &CorrectedDiscs) -> SweepReport {
-        alone_if(self.is_small(), || {
+        single_threaded_if(self.is_small(), || {
             let (mut radius, mut inverse_mass) = (vec![], vec![]);
             if self.system.inertia == Inertia::Varying {
                 [radius, inverse_mass] = [0, 1].map(|_| vec![0.0; self.state.len()]);

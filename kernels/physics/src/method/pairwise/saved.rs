@@ -8,7 +8,7 @@ use crate::method::restored::find_column;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::Element;
-use stripmine_kernels::{alone_if, in_pieces};
+use stripmine_kernels::{in_pieces, single_threaded_if};
 
 const SUMS: [&str; 3] = ["Fx", "Fy", "torque"];
 pub(super) const CELL: [&str; 2] = ["cell.column", "cell.row"];
@@ -44,7 +44,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Builds a column with an entry for each of some discs.
     fn column<T: Element>(&self, discs: &[u32], value: impl Fn(usize) -> T + Sync) -> CheckpointColumn {
         let mut column = vec![T::default(); discs.len()];
-        alone_if(self.is_small(), || {
+        single_threaded_if(self.is_small(), || {
             in_pieces(&mut column, |first, piece| {
                 piece.iter_mut().zip(&discs[first..]).for_each(|(to, &disc)| *to = value(disc as usize));
             });
@@ -54,7 +54,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Everything that the next step depends on, by name, in the scene's order.
     pub(super) fn saved(&self) -> Vec<(String, CheckpointColumn)> {
-        let mut columns = self.columns_of(&self.disc_of_each());
+        let mut columns = self.columns_of(&self.indices_by_number());
         columns.extend(self.columns_of_all());
         columns
     }
@@ -109,7 +109,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     ///
     /// # Errors
     /// Says why, if the columns are not those of these discs.
-    pub(super) fn take_up(
+    pub(super) fn restore_state(
         &mut self,
         steps: u64,
         columns: &[(String, CheckpointColumn)],
@@ -122,11 +122,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             }
             _ => return Err(format!("the column {LISTS_MADE} is missing or not a count")),
         };
-        self.elapsed.crossings.take_up(columns)?;
-        self.take_up_discs(columns, numbers, self.start.len())?;
+        self.elapsed.crossings.restore_counts(columns)?;
+        self.restore_discs(columns, numbers, self.start.len())?;
         self.search.set_lists_made(made);
         self.elapsed.steps = steps;
-        self.give_walls_their_velocity();
+        self.update_wall_velocity();
         Ok(())
     }
 
@@ -134,7 +134,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     ///
     /// # Errors
     /// As [`take_up`](Self::take_up).
-    pub(super) fn take_up_discs(
+    pub(super) fn restore_discs(
         &mut self,
         columns: &[(String, CheckpointColumn)],
         entries: Vec<u32>,
@@ -179,7 +179,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
                 self.state.columns[axis][0][..places.len()].copy_from_slice(&places);
             }
         }
-        let order = self.put_in_order();
+        let order = self.sort_by_cell();
         for (disc, before) in order.into_iter().enumerate() {
             self.state.put(disc, now[before as usize]);
         }

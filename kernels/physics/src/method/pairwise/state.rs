@@ -8,7 +8,7 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
 use stripmine_kernels::isa::AlignedColumn;
 use stripmine_kernels::sweep::fast::{self, SENTINELS};
-use stripmine_kernels::{in_pieces, put_in_order, reordered};
+use stripmine_kernels::{in_pieces, reorder_into, reordered};
 
 /// Change of cell of a disc, its position relative to the new centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,7 +242,7 @@ impl<S: Precision> MovingDiscs<S> {
         let derivatives = self.columns.iter_mut().flatten();
         for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
             if !column.is_empty() {
-                put_in_order(&mut self.spare, column, &with_sentinels);
+                reorder_into(&mut self.spare, column, &with_sentinels);
                 std::mem::swap(column, &mut self.spare);
             }
         }

@@ -6,10 +6,10 @@ use crate::io::checkpoint::CheckpointColumn;
 use crate::method::{PerParticle, PhysicsFailure, SteppedState};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::{GrainStates, Particle, Particles};
-use stripmine_kernels::alone_if;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::law::ObservationRequest;
 use stripmine_kernels::ledger::{Ledger, VectorLength};
+use stripmine_kernels::single_threaded_if;
 use stripmine_kernels::sweep::fast::SweepReport;
 
 /// Work of gravity on a grain, given its number in the scene and its position.
@@ -125,31 +125,32 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PerParticle for PairEngine
     }
 
     fn states(&self, states: &mut GrainStates) {
-        self.each_standing(0..self.start.len(), |disc, place, velocity| {
-            states.put(self.state.number(disc), self.system.domain.wrapped(place), velocity);
+        self.for_each_at_step_end(0..self.start.len(), |disc, place, velocity| {
+            states.store_state(self.state.number(disc), self.system.domain.wrapped(place), velocity);
         });
     }
 
     fn positions(&self) -> Vec<[f32; 3]> {
-        self.standing_places()
+        self.step_end_positions()
     }
 
     fn images(&self) -> Vec<[i32; 2]> {
-        self.standing_images()
+        self.step_end_images()
     }
 }
 
 impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngine<S, P, Q> {
     fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
-        alone_if(self.is_small(), || self.moved_on())
+        single_threaded_if(self.is_small(), || self.advance_positions())
     }
 
     fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
         let mut timings = self.elapsed.timings;
-        let met = timings.time(Phase::Forces, || alone_if(self.is_small(), || self.add_forces(asked)))?;
+        let met =
+            timings.time(Phase::Forces, || single_threaded_if(self.is_small(), || self.add_forces(asked)))?;
         self.elapsed.timings = timings;
         self.awaits_forces = false;
-        self.refuse_not_finite(&met)?;
+        self.reject_not_finite_forces(&met)?;
         Ok(met)
     }
 
@@ -174,7 +175,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
     }
 
     fn unwrapped(&self) -> Particles {
-        self.standing()
+        self.step_end_particles()
     }
 
     fn forces(&self) -> Vec<[f64; 3]> {
@@ -190,7 +191,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
     }
 
     fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
-        self.take_up(steps, columns)
+        self.restore_state(steps, columns)
     }
 
     fn sums(&self, scenery: &SceneProperties, work: &GravityWork<'_>) -> ObservationSums {

@@ -32,7 +32,7 @@ impl CellBits {
     /// # Safety
     /// `position` is below [`positions`](Self::positions).
     #[inline(always)]
-    pub(super) unsafe fn from(&self, position: usize) -> u64 {
+    pub(super) unsafe fn bits_from(&self, position: usize) -> u64 {
         let (word, shift) = (position / 64, position % 64);
         // SAFETY: the position is below (words − 1)·64, by the caller's promise, so this word and the next exist.
         unsafe {

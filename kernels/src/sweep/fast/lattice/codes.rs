@@ -28,13 +28,13 @@ impl PackedCandidate {
 
 /// Number of offsets of a half mask.
 #[inline]
-pub(super) const fn place_count(half_width: usize) -> usize {
+pub(super) const fn offset_count(half_width: usize) -> usize {
     half_width + half_width * (2 * half_width + 1)
 }
 
 /// An offset of a half mask in the order of the sweep: column and row. Numbers beyond the last are no offsets.
 #[inline]
-pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
+pub(super) const fn half_mask_offset(half_width: usize, number: usize) -> [isize; 2] {
     if number < half_width {
         return [number as isize + 1, 0];
     }
@@ -44,14 +44,14 @@ pub(super) const fn place(half_width: usize, number: usize) -> [isize; 2] {
 
 /// Offsets of a half mask in their order.
 #[inline]
-fn places(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
-    (0..place_count(half_width)).map(move |number| place(half_width, number))
+fn half_mask_offsets(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
+    (0..offset_count(half_width)).map(move |number| half_mask_offset(half_width, number))
 }
 
 /// Lane and offset of every code, in order.
 #[inline]
 pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
-    places(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
+    half_mask_offsets(half_width).flat_map(|place| (0..GROUP).map(move |lane| (lane, place)))
 }
 
 /// Tables that decode candidates.
@@ -83,8 +83,8 @@ impl<P: Precision> Codes<P> {
 
     /// True if the tables fit this lattice: equal row length and mask width.
     #[inline]
-    pub(super) fn are_of(&self, occupancy: &Occupancy) -> bool {
-        let codes = place_count(occupancy.half_width()) * GROUP;
+    pub(super) fn is_for(&self, occupancy: &Occupancy) -> bool {
+        let codes = offset_count(occupancy.half_width()) * GROUP;
         self.stride == occupancy.shape().stride() && self.cells.len() == codes
     }
 

@@ -23,7 +23,7 @@
 //! - *Bits, not branches.* Results stay bits until the end. Candidates are appended four at a time, even if there are fewer,
 //!   because their number cannot be predicted.
 
-use super::codes::{PackedCandidate, place, place_count};
+use super::codes::{PackedCandidate, half_mask_offset, offset_count};
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::RegisterTask;
@@ -60,8 +60,8 @@ impl RegisterTask<f32> for DenseSearch<'_> {
 
 /// Words for the results of a group: 12 or 24 offsets.
 #[inline]
-const fn words(half_width: usize) -> usize {
-    place_count(half_width).div_ceil(PLACES)
+const fn word_count(half_width: usize) -> usize {
+    offset_count(half_width).div_ceil(PLACES)
 }
 
 impl DenseSearch<'_> {
@@ -85,7 +85,7 @@ impl DenseSearch<'_> {
                 let base = shape.position(column as isize, cursor.row as isize);
                 let inside = (1 << GROUP.min(shape.columns() - column)) - 1;
                 // SAFETY: the group begins before `end`, for which there are bits (asserted above).
-                let own = unsafe { occupied.from(base) } & inside;
+                let own = unsafe { occupied.bits_from(base) } & inside;
                 if own != 0 {
                     if found.len() >= full {
                         return;
@@ -102,9 +102,13 @@ impl DenseSearch<'_> {
                             limit,
                         )
                     };
-                    for (word, near) in near.into_iter().take(const { words(H) }).enumerate() {
+                    for (word, near) in near.into_iter().take(const { word_count(H) }).enumerate() {
                         let own = own * 0x0001_0001_0001_0001;
-                        list(found, (base as u64) << PackedCandidate::CODE | (word as u64) << 6, near & own);
+                        list_candidates(
+                            found,
+                            (base as u64) << PackedCandidate::CODE | (word as u64) << 6,
+                            near & own,
+                        );
                     }
                 }
                 cursor.along += 1;
@@ -142,8 +146,8 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
         // Unrolled by hand: if the compiler leaves a loop, the words stay in memory, at five times the cost.
         macro_rules! at_places {
             ($($number:literal)*) => {$(
-                if $number < const { place_count(H) } {
-                    let [column, row] = const { place(H, $number) };
+                if $number < const { offset_count(H) } {
+                    let [column, row] = const { half_mask_offset(H, $number) };
                     let shift = row * stride as isize + column + part as isize;
                     // SAFETY: the caller promises that every cell of the group exists at every offset of the mask.
                     let (dx, dy) = unsafe {
@@ -172,7 +176,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
 
 /// Appends a candidate for every bit, lowest first.
 #[inline(always)]
-fn list(found: &mut Vec<PackedCandidate>, prefix: u64, bits: u64) {
+fn list_candidates(found: &mut Vec<PackedCandidate>, prefix: u64, bits: u64) {
     append_bits(found, bits, |bit| PackedCandidate(prefix | bit));
 }
 

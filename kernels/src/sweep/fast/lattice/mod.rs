@@ -85,7 +85,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     ) -> Result<(), ProgramError> {
         let Lattice { occupancy, codes, slack } = *self;
         let Candidates { candidates: found, cells, shape } = found;
-        assert!(codes.are_of(occupancy), "the codes are those of another lattice");
+        assert!(codes.is_for(occupancy), "the codes are those of another lattice");
         let entries = occupancy.discs() + SENTINELS;
         assert!(
             places.iter().all(|place| place.len() == entries),
@@ -106,7 +106,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
     }
 
     /// Pairs each disc in a shared cell with all discs around it, and with the others in shared cells.
-    fn find_beside(&self, rows: Range<usize>, found: &mut PairBuffer<P>) {
+    fn find_extra_pairs(&self, rows: Range<usize>, found: &mut PairBuffer<P>) {
         let occupancy = self.occupancy;
         let (shared, shape) = (occupancy.shared_cells(), occupancy.shape());
         let CellGrid { frame, counts, periodic } = occupancy.grid();
@@ -140,7 +140,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
 
     #[inline]
     fn pairs<'a>(&'a self, found: &'a Candidates) -> impl PairSequence<P> + 'a {
-        assert!(self.codes.are_of(self.occupancy), "the codes are those of another lattice");
+        assert!(self.codes.is_for(self.occupancy), "the codes are those of another lattice");
         assert!(found.candidates.is_empty() || found.shape.as_ref() == Some(self.occupancy.shape()));
         PackedPairs { codes: self.codes, index: self.occupancy.index(), candidates: &found.candidates }
     }

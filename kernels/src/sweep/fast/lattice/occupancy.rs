@@ -22,7 +22,7 @@ const RADIUS: usize = 33;
 const PLACE: usize = 34;
 
 /// Positions of empty cells.
-fn far(cells: usize) -> [AlignedColumn<f32>; 2] {
+fn empty_positions(cells: usize) -> [AlignedColumn<f32>; 2] {
     [AlignedColumn::filled(PLACE, FAR, cells), AlignedColumn::zeros(PLACE + 1, cells)]
 }
 
@@ -89,7 +89,7 @@ impl Occupancy {
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, length),
             sparse,
-            place: far(places),
+            place: empty_positions(places),
             radius: (vary && !sparse).then(|| AlignedColumn::zeros(RADIUS, length)),
             occupied: CellBits::new(&shape, half_width),
             images: shape
@@ -108,7 +108,7 @@ impl Occupancy {
     /// # Panics
     /// If there are 2³² − 3 discs or more.
     #[inline]
-    pub fn emptied(&self, discs: usize) -> Self {
+    pub fn empty_copy(&self, discs: usize) -> Self {
         assert!(
             discs < u32::MAX as usize - SENTINELS,
             "{discs} discs are too many to number: a lattice holds fewer than 2^32 − 3"
@@ -117,7 +117,7 @@ impl Occupancy {
             discs,
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, self.index.len()),
-            place: far(self.place[0].len()),
+            place: empty_positions(self.place[0].len()),
             radius: self.radius.as_ref().map(|radius| AlignedColumn::zeros(RADIUS, radius.len())),
             occupied: CellBits::new(&self.shape, self.half_width),
             images: self.images.clone(),
@@ -204,7 +204,7 @@ impl Occupancy {
         if let Some(radii) = &mut self.radius {
             radii[at] = (radius * self.unit) as f32;
         }
-        self.settle(disc, place);
+        self.update_position(disc, place);
         self.occupied.set(at, true);
         Ok(())
     }
@@ -261,7 +261,7 @@ impl Occupancy {
     /// # Panics
     /// If the disc is in no cell.
     #[inline]
-    pub fn settle(&mut self, disc: usize, place: [f64; 2]) {
+    pub fn update_position(&mut self, disc: usize, place: [f64; 2]) {
         let at = self.cell[disc] as usize;
         assert!(at < self.index.len(), "disc {disc} is in no cell");
         if self.sparse {

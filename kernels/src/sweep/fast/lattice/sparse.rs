@@ -56,7 +56,7 @@ impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
             for column in (0..shape.columns()).step_by(64) {
                 let inside = u64::MAX >> (64 - (shape.columns() - column).min(64));
                 // SAFETY: the row ends before `end`, for which there are bits (asserted above).
-                let own = unsafe { occupied.from(first + column) } & inside;
+                let own = unsafe { occupied.bits_from(first + column) } & inside;
                 if own != 0 {
                     append_bits(cells, own, |bit| (first + column) as u64 + bit);
                 }
@@ -64,10 +64,10 @@ impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
             for &cell in cells.iter() {
                 let position = cell as usize;
                 // SAFETY: the cell is in one of the rows, so its offsets are before `end`.
-                let mut near = unsafe { occupied.from(position + 1) } & ahead;
+                let mut near = unsafe { occupied.bits_from(position + 1) } & ahead;
                 for row in 1..=h {
                     // SAFETY: the row is at most `h` ahead, so the position is before `end` too.
-                    let there = unsafe { occupied.from(position + row * shape.stride() - h) } & around;
+                    let there = unsafe { occupied.bits_from(position + row * shape.stride() - h) } & around;
                     near |= there << (h + (row - 1) * (2 * h + 1));
                 }
                 let before = found.len();

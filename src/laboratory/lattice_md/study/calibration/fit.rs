@@ -12,13 +12,13 @@ pub(super) struct FitRow<const N: usize> {
 
 impl<const N: usize> FitRow<N> {
     /// Predicted nanoseconds.
-    pub(super) fn said(&self, unknowns: &[f64; N]) -> f64 {
+    pub(super) fn predicted_time(&self, unknowns: &[f64; N]) -> f64 {
         self.features.iter().zip(unknowns).map(|(feature, cost)| feature * cost).sum::<f64>()
     }
 
     /// Error of the prediction, as the magnitude of the logarithm of the ratio.
     pub(super) fn deviation(&self, unknowns: &[f64; N]) -> f64 {
-        (self.said(unknowns) / self.ns).ln().abs()
+        (self.predicted_time(unknowns) / self.ns).ln().abs()
     }
 }
 
@@ -26,7 +26,7 @@ impl<const N: usize> FitRow<N> {
 const ROUNDS: usize = 6;
 
 /// Fits non-negative unknowns to all rows, weighted by relative errors.
-pub(super) fn suited<const N: usize>(rows: &[FitRow<N>]) -> [f64; N] {
+pub(super) fn fit_robustly<const N: usize>(rows: &[FitRow<N>]) -> [f64; N] {
     let mut unknowns: Option<[f64; N]> = None;
     for _ in 0..ROUNDS {
         let weighted = rows.iter().map(|row| {
@@ -47,7 +47,9 @@ mod tests {
     fn the_fit_ignores_a_disturbed_point() {
         let line = |disturbed: f64| {
             let ns = |n: f64| (5.0 + 0.25 * n) * if n == 64.0 { disturbed } else { 1.0 };
-            suited(&[8.0, 16.0, 64.0, 128.0, 256.0, 512.0].map(|n| FitRow { features: [n, 1.0], ns: ns(n) }))
+            fit_robustly(
+                &[8.0, 16.0, 64.0, 128.0, 256.0, 512.0].map(|n| FitRow { features: [n, 1.0], ns: ns(n) }),
+            )
         };
         let [element, start] = line(1.0);
         assert!((element - 0.25).abs() < 1e-6 && (start - 5.0).abs() < 1e-5, "{element} {start}");

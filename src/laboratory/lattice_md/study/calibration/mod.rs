@@ -10,7 +10,7 @@ use super::samples::Samples;
 use crate::laboratory::running::on_threads;
 use crate::model::host::{ExecutionPrices, FORMAT, HostModel, LaneCosts, MeasurementConditions};
 use crate::statistics::median;
-use fit::suited;
+use fit::fit_robustly;
 use programs::{DrillPrograms, FOOTPRINTS, LANES, LONGEST};
 use scenes::DrillScenes;
 use std::time::{Duration, Instant};
@@ -32,10 +32,10 @@ const SCENES: f64 = 0.4;
 /// # Errors
 /// [`StudyError`] if the processor lacks the instruction set, or a drill scene breaks.
 pub(crate) fn calibrate(seconds: f64, progress: impl Fn(f64) + Sync) -> Result<HostModel, StudyError> {
-    on_threads(1, || Ok(measured(seconds, &progress)?))
+    on_threads(1, || Ok(measure_host(seconds, &progress)?))
 }
 
-fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, MeasurementError> {
+fn measure_host(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, MeasurementError> {
     let (set, begun, load) = (InstructionSet::best(), Instant::now(), load_average());
     let shapes = [register_shape::<f64>(set)?, register_shape::<f32>(set)?];
     let (mut programs, mut scenes) = (DrillPrograms::new()?, DrillScenes::new()?);
@@ -57,7 +57,7 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
     let mut deviations = vec![];
     let mut prices = |lane, is_chained, shape| {
         let rows = programs.rows((lane, is_chained), shape);
-        let prices = suited(&rows);
+        let prices = fit_robustly(&rows);
         deviations.extend(rows.iter().map(|row| row.deviation(&prices)));
         ExecutionPrices::of(&prices)
     };
@@ -67,8 +67,8 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
         (lane.to_owned(), LaneCosts { register_bytes, lanes, interpreted, chained })
     });
     let of_lanes = of_lanes.collect();
-    let spread = middle_of_most(programs.samples().map(Samples::spread));
-    let disagreement = middle_of_most(programs.samples().map(Samples::disagreement));
+    let spread = majority_median(programs.samples().map(Samples::spread));
+    let disagreement = majority_median(programs.samples().map(Samples::disagreement));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let measured = MeasurementConditions {
         state: MeasurementConditions::state_of([spread, disagreement], load, cores),
@@ -93,7 +93,7 @@ fn measured(seconds: f64, progress: &dyn Fn(f64)) -> Result<HostModel, Measureme
 }
 
 /// Median of the known values; `None` if most are unknown.
-fn middle_of_most(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+fn majority_median(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let all: Vec<Option<f64>> = values.collect();
     let known: Vec<f64> = all.iter().copied().flatten().filter(|value| value.is_finite()).collect();
     (2 * known.len() > all.len()).then(|| median(known.into_iter()))
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn median_needs_a_majority_of_known_values() {
-        let of = |values: &[Option<f64>]| middle_of_most(values.iter().copied());
+        let of = |values: &[Option<f64>]| majority_median(values.iter().copied());
         assert_eq!(of(&[]), None);
         assert_eq!(of(&[None, None, Some(0.1)]), None);
         assert_eq!(of(&[None, Some(0.3), Some(0.1), Some(0.2)]), Some(0.2));

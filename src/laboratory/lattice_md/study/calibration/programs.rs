@@ -1,7 +1,7 @@
 //! Timing of the programs of a step on drill scenes of many sizes, with the interpreter and as compiled loops.
 
 use super::fit::FitRow;
-use crate::laboratory::lattice_md::study::phase_times::{BenchRun, PRECISIONS, step};
+use crate::laboratory::lattice_md::study::phase_times::{BenchRun, PRECISIONS, step_of_scene};
 use crate::laboratory::lattice_md::study::samples::Samples;
 use crate::model::host::{StepArrays, charges};
 use std::ops::Range;
@@ -66,7 +66,7 @@ trait ArraySet {
 
     /// Moves the arrays to other addresses. Conflicts of rows in the first-level cache depend on them: with some layouts the predictor took
     /// 256 ns, with most 160 ns. Longer rows come from higher levels anyway.
-    fn elsewhere(&mut self);
+    fn relocate(&mut self);
 }
 
 impl<S: Precision, P: Precision> ArraySet for ProgramArrays<S, P> {
@@ -74,7 +74,7 @@ impl<S: Precision, P: Precision> ArraySet for ProgramArrays<S, P> {
         self.memory().0
     }
 
-    fn elsewhere(&mut self) {
+    fn relocate(&mut self) {
         *self = self.clone();
     }
 }
@@ -96,7 +96,8 @@ impl DrillStep {
         // The discs are at rest, so no drill depends on the previous one.
         let at_rest = Overrides::new().set(&TEMPERATURE, 0.0).set(&SEED, 7_u64);
         let checked = BenchRun { particles, occupancy, precision, execution: "chained" }.scene(&at_rest)?;
-        let (model, discs, (programs, lengths)) = (model(&checked), &checked.particles, step(&checked));
+        let (model, discs, (programs, lengths)) =
+            (model(&checked), &checked.particles, step_of_scene(&checked));
         Ok(DrillStep {
             ranges: programs.iter().map(|step| lengths.range(step.length)).collect(),
             samples: std::array::from_fn(|_| vec![Samples::default(); programs.len()]),
@@ -122,7 +123,7 @@ impl DrillStep {
         if !number.is_multiple_of(turn) {
             return Ok(());
         }
-        self.arrays.elsewhere();
+        self.arrays.relocate();
         let memory = self.arrays.memory();
         for (execution, samples) in EXECUTIONS.into_iter().zip(&mut self.samples) {
             let is_chained = execution == Execution::Chained;

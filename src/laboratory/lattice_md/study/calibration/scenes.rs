@@ -1,6 +1,6 @@
 //! Timing of work that depends on the data: the fast engine and neighbour lists, on separate drill scenes.
 
-use super::fit::{FitRow, suited};
+use super::fit::{FitRow, fit_robustly};
 use crate::laboratory::lattice_md::study::phase_times::{
     BenchRun, FAST, FAST_LISTS, LISTS, PRECISIONS, PhaseTimedRun,
 };
@@ -60,14 +60,19 @@ impl DrillScenes {
                 let is_alike = |run: &BenchRun| (run.rates(), run.precision) == (Some(method), precision);
                 let alike = || self.0.iter().map(|(scene, _)| scene).filter(|scene| is_alike(&scene.run));
                 let upkeep = Phase::ALL.iter().map(|&phase| {
-                    let done = alike().map(|it| (charged(phase, &it.amounts()), it.upkeep(phase)));
-                    (phase.name(), units(done))
+                    let done = alike().map(|it| {
+                        (relevant_amounts(phase, &it.amounts_per_step()), it.phase_time_without_builds(phase))
+                    });
+                    (phase.name(), fit_units(done))
                 });
                 let making = alike().filter_map(|it| {
-                    let Amounts { discs: remade, candidates: relisted, .. } = it.amounts();
-                    Some((Amounts { makings: 1.0, remade, relisted, ..Amounts::default() }, it.making()?))
+                    let Amounts { discs: remade, candidates: relisted, .. } = it.amounts_per_step();
+                    Some((
+                        Amounts { makings: 1.0, remade, relisted, ..Amounts::default() },
+                        it.list_build_time()?,
+                    ))
                 });
-                for (phase, units) in upkeep.chain([(MAKING, units(making))]) {
+                for (phase, units) in upkeep.chain([(MAKING, fit_units(making))]) {
                     let Some(units) = units else { continue };
                     let rates = methods.entry(method.to_owned()).or_default();
                     rates.entry(phase.to_owned()).or_default().insert(precision.to_owned(), units);
@@ -79,14 +84,14 @@ impl DrillScenes {
 }
 
 /// Cost of each unit, fitted to amounts and nanoseconds of runs; `None` without such work.
-fn units(done: impl Iterator<Item = (Amounts, f64)>) -> Option<AmountUnits> {
+fn fit_units(done: impl Iterator<Item = (Amounts, f64)>) -> Option<AmountUnits> {
     let rows = done.filter(|(_, ns)| *ns > 0.0);
     let rows: Vec<_> = rows.map(|(amounts, ns)| FitRow { features: amounts.values(), ns }).collect();
-    (!rows.is_empty()).then(|| suited(&rows))
+    (!rows.is_empty()).then(|| fit_robustly(&rows))
 }
 
 /// Units that a phase can depend on; others would only fit the noise.
-fn charged(phase: Phase, amounts: &Amounts) -> Amounts {
+fn relevant_amounts(phase: Phase, amounts: &Amounts) -> Amounts {
     let Amounts { steps, discs, cells, candidates, contacts, .. } = *amounts;
     let none = Amounts { steps, discs, ..Amounts::default() };
     match phase {
@@ -108,10 +113,10 @@ mod tests {
             (amounts, 2.0 * scatter * amounts.discs)
         };
         let scatter = [1.0, 900.0, 0.8, 1.1, 40.0, 1.2, 0.9].into_iter().enumerate();
-        let units = units(scatter.map(done)).unwrap();
+        let units = fit_units(scatter.map(done)).unwrap();
         assert!((1.0..4.0).contains(&units[1]), "{units:?}");
         assert_eq!(units.iter().filter(|unit| **unit > 0.0).count(), 1);
-        assert_eq!(super::units(std::iter::empty()), None);
+        assert_eq!(super::fit_units(std::iter::empty()), None);
     }
 
     #[test]
@@ -119,7 +124,7 @@ mod tests {
         let done = |discs: f64, contacts: f64| {
             (Amounts { discs, contacts, ..Amounts::default() }, 2.0 * discs + 5.0 * contacts)
         };
-        let found = units([done(100.0, 10.0), done(100.0, 70.0), done(1000.0, 1.0)].into_iter()).unwrap();
+        let found = fit_units([done(100.0, 10.0), done(100.0, 70.0), done(1000.0, 1.0)].into_iter()).unwrap();
         assert!((found[1] - 2.0).abs() < 1e-3 && (found[4] - 5.0).abs() < 1e-3, "{found:?}");
     }
 }

@@ -3,7 +3,7 @@
 //! BP93 prints 59, 12, 1656 = 24 · 69 and 54, but neither a program nor a rule of counting. No convention counts conversions between
 //! numbers and indices, because a CRAY word serves as both.
 
-use super::question::{TableScene, TableSceneError, model_of, step};
+use super::question::{TableScene, TableSceneError, programs_of_step, scene_model};
 use crate::frame::{FrameBuilder, ResultFrame};
 use stripmine_kernels::isa::{Op, OpClass, OpCounts};
 use stripmine_kernels::mask::Mask;
@@ -70,7 +70,7 @@ pub(super) fn conventions(question: &TableScene) -> Result<(ResultFrame, [usize;
     let frame = rows
         .cells(NUMBERS, |it| it.counts)
         .number("largest difference (%)", 1, |it| 100.0 * it.worst)
-        .text("what the source's number lacks or has beyond it", residual)
+        .text("what the source's number lacks or has beyond it", describe_differences)
         .frame("conventions", "Ways of counting the printed text, and the four numbers by each");
     let of = |is: &dyn Fn(&&ConventionCounts) -> bool| all.iter().filter(is).count();
     let [predictor, index, place, corrector] = [0, 1, 2, 3].map(|part| of(&|it| it.off[part] == 0));
@@ -78,7 +78,7 @@ pub(super) fn conventions(question: &TableScene) -> Result<(ResultFrame, [usize;
 }
 
 /// Description of the differences.
-fn residual(counted: &&ConventionCounts) -> String {
+fn describe_differences(counted: &&ConventionCounts) -> String {
     let off = NUMBERS.iter().zip(counted.off).filter(|(_, off)| *off != 0);
     let words: Vec<String> = off
         .map(|(name, off)| format!("{name}: {} {}", off.abs(), if off > 0 { "too many" } else { "missing" }))
@@ -97,9 +97,9 @@ struct PrintedOperations {
 
 impl PrintedOperations {
     fn of(question: &TableScene) -> Result<PrintedOperations, TableSceneError> {
-        let mut model = model_of(question)?;
-        let (all, places) = (ledger(&step(question)?.0), model.mask.offsets().len() as u64);
-        model.mask = Mask::one_place();
+        let mut model = scene_model(question)?;
+        let (all, places) = (ledger(&programs_of_step(question)?.0), model.mask.offsets().len() as u64);
+        model.mask = Mask::single_offset();
         let one = ledger(&programs(&model, Precision::F64));
         let index = all.entries().iter().filter(|entry| entry.part == Part::Index.name());
         Ok(PrintedOperations {
@@ -181,7 +181,8 @@ mod tests {
                 (question(gear_values).choice, false),
                 (TableFeatures { gear_values, ..TableFeatures::default() }, true),
             ] {
-                let (programs, _) = step(&TableScene { choice, ..TableScene::default() }).unwrap();
+                let (programs, _) =
+                    programs_of_step(&TableScene { choice, ..TableScene::default() }).unwrap();
                 for (part, corrects) in [(Part::Predictor, false), (Part::Corrector, true)] {
                     let run = ledger(&programs).part(part.name());
                     let arithmetic = run.filtered(|op| !op.class().moves_data()).total();

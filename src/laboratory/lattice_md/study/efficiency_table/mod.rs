@@ -3,7 +3,9 @@
 mod conventions;
 mod question;
 
-pub(crate) use question::{TableFeatures, TableScene, TableSceneError, counting_model, model_of, step};
+pub(crate) use question::{
+    TableFeatures, TableScene, TableSceneError, counting_model, programs_of_step, scene_model,
+};
 
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame, TableCell};
@@ -37,7 +39,7 @@ pub(crate) fn printed_clocks(part: Part, machine: &MachineModel, discs: u64, cel
 }
 
 /// Counts the default scene on the machine of the paper.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     Ok(efficiency_table(&TableScene::default(), &machines::preset("paper")?)?)
 }
 
@@ -50,7 +52,7 @@ struct CountedText<'m> {
 
 impl CountedText<'_> {
     fn of<'m>(question: &TableScene, machine: &'m MachineModel) -> Result<CountedText<'m>, TableSceneError> {
-        let (programs, lengths) = step(question)?;
+        let (programs, lengths) = programs_of_step(question)?;
         Ok(CountedText { ledger: ledger(&programs), lengths, machine })
     }
 
@@ -143,10 +145,10 @@ fn force_sections(question: &TableScene, name: &str, title: &str) -> Result<Resu
         let forces = programs(model, Precision::F64).into_iter().filter(|step| step.part == Part::Forces);
         forces.flat_map(|step| step.program.tally()).collect()
     };
-    let model = model_of(question)?;
+    let model = scene_model(question)?;
     let more = (model.mask.offsets().len() - 1) as u64;
     let all = tally(&model);
-    let one = tally(&GranularModel { mask: Mask::one_place(), ..model });
+    let one = tally(&GranularModel { mask: Mask::single_offset(), ..model });
     let shifts = |counts: &OpCounts| counts.of_class(OpClass::Shift);
     // Section; operations per offset, shifts among these, operations per cell, total.
     let mut rows: Vec<(&str, [u64; 4])> = vec![];

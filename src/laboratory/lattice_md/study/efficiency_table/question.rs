@@ -152,7 +152,7 @@ pub(crate) fn counting_model(cells: usize, choice: TableFeatures) -> Result<Gran
     })
 }
 
-pub(crate) fn model_of(question: &TableScene) -> Result<GranularModel, TableSceneError> {
+pub(crate) fn scene_model(question: &TableScene) -> Result<GranularModel, TableSceneError> {
     let &TableScene { particles, occupancy, choice } = question;
     if particles == 0 {
         return Err(TableSceneError::NoParticles);
@@ -165,8 +165,10 @@ pub(crate) fn model_of(question: &TableScene) -> Result<GranularModel, TableScen
 }
 
 /// Programs of a step and their vector lengths.
-pub(crate) fn step(question: &TableScene) -> Result<(Vec<StepProgram>, Lengths), TableSceneError> {
-    let model = model_of(question)?;
+pub(crate) fn programs_of_step(
+    question: &TableScene,
+) -> Result<(Vec<StepProgram>, Lengths), TableSceneError> {
+    let model = scene_model(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);
     Ok((programs(&model, Precision::F64), lengths))
 }

@@ -51,7 +51,7 @@ pub(super) struct AsPrinted {
 }
 
 impl AsPrinted {
-    fn prints(&self, misprint: Misprint) -> bool {
+    fn is_misprinted(&self, misprint: Misprint) -> bool {
         self.misprint == Some(misprint)
     }
 }
@@ -100,18 +100,20 @@ impl Law<2> for AsPrinted {
         // (14)
         let damping = number(self.contact.normal_damping) * effective_mass * (vx * nx + vy * ny);
         let elastic = number(self.contact.stiffness) * depth * depth.sqrt();
-        let normal = if self.prints(Misprint::NormalDamping) { elastic + damping } else { elastic - damping };
+        let normal =
+            if self.is_misprinted(Misprint::NormalDamping) { elastic + damping } else { elastic - damping };
 
         // (16)
         let [own_omega, omega] = both(ParticleField::Omega);
         let (own_rim, rim) = (radii[0] * own_omega, radii[1] * omega);
         let along = vx * sx + vy * sy;
-        let slip = if self.prints(Misprint::Slip) { along + own_rim - rim } else { along - own_rim - rim };
+        let slip =
+            if self.is_misprinted(Misprint::Slip) { along + own_rim - rim } else { along - own_rim - rim };
 
         // (15)
         let viscous = number(self.contact.shear_damping) * effective_mass * slip;
         let bound = number(self.contact.friction) * normal.abs();
-        let shear = if self.prints(Misprint::CoulombBound) {
+        let shear = if self.is_misprinted(Misprint::CoulombBound) {
             (zero - viscous).min(bound)
         } else {
             let size = viscous.abs().min(bound);
@@ -119,7 +121,7 @@ impl Law<2> for AsPrinted {
         };
 
         // (10)-(12)
-        let (tx, ty) = if self.prints(Misprint::Tangent) { (ny, zero - nx) } else { (sx, sy) };
+        let (tx, ty) = if self.is_misprinted(Misprint::Tangent) { (ny, zero - nx) } else { (sx, sy) };
         let force = [normal * nx + shear * tx, normal * ny + shear * ty];
         for (sum, component) in
             [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)].into_iter().zip(force)

@@ -70,7 +70,7 @@ const PAIRS: usize = 500;
 const SEED: u64 = 1993;
 
 /// Tests every misprint.
-pub(crate) fn made(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (head_on, sliding) = (head_on(), sliding());
     let findings = FrameBuilder::of(findings(&head_on, &sliding))
         .cells(["equation", "as printed", "as it runs"], |it| it.misprint.words())
@@ -108,7 +108,7 @@ fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [MisprintFinding; 6
             "largest |dL/dt + ξ F_S| of random pairs in contact",
             format!("{}; {PAIRS} pairs", setting(CONTACT)),
             exact,
-            [off_the_rule(&printed(Tangent, CONTACT)), off_the_rule(&ours(CONTACT))],
+            [angular_momentum_error(&printed(Tangent, CONTACT)), angular_momentum_error(&ours(CONTACT))],
         ),
         // Separated discs have no elastic energy.
         finding(
@@ -137,7 +137,7 @@ fn findings(head_on: &[Energy], sliding: &[CoulombRatio]) -> [MisprintFinding; 6
             "|F_S| between gears that roll on each other",
             setting(CONTACT),
             exact,
-            [shear_of_gears(&printed(Slip, CONTACT)), shear_of_gears(&ours(CONTACT))],
+            [rolling_shear(&printed(Slip, CONTACT)), rolling_shear(&ours(CONTACT))],
         ),
         finding(
             Slip,
@@ -169,7 +169,7 @@ fn ours(contact: Contact) -> Granular<true, false> {
 }
 
 /// Largest error of d(L_orbital + L_spin)/dt = −ξ F_S, with −R F_S the torque on the first disc.
-fn off_the_rule<L: Law<2>>(law: &L) -> f64 {
+fn angular_momentum_error<L: Law<2>>(law: &L) -> f64 {
     let mut random = Stream::new(SEED, RandomPurpose::Placement, 0);
     let pairs = (0..PAIRS).map(|_| Pair::random(&mut random));
     largest(pairs.map(|pair| {
@@ -225,7 +225,7 @@ fn asymmetry<L: Law<2>>(law: &L) -> f64 {
     largest(slips().map(|slip| slide(slip).asymmetry(law)))
 }
 
-fn shear_of_gears<L: Law<2>>(law: &L) -> f64 {
+fn rolling_shear<L: Law<2>>(law: &L) -> f64 {
     let [_, shear] = Pair::gears(1.0).normal_and_shear(law);
     shear.abs()
 }

@@ -6,7 +6,7 @@ mod strangers;
 
 use super::StudyError;
 use super::calibration::calibrate;
-use super::phase_times::{BenchRun, FAST, FAST_LISTS, LISTS, PRECISIONS, PhaseTimedRun, step};
+use super::phase_times::{BenchRun, FAST, FAST_LISTS, LISTS, PRECISIONS, PhaseTimedRun, step_of_scene};
 use crate::console::CommandFailure;
 use crate::frame::FrameBuilder;
 use crate::laboratory::running::on_threads;
@@ -14,7 +14,7 @@ use crate::model::host::{Amounts, HostModel, OutOfRange, StepArrays, default_mod
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use errors::ValidationCase;
 use std::time::Instant;
-use strangers::strangers;
+use strangers::uncalibrated_laws;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_physics::method::lattice_md::{Part, Phase};
@@ -66,7 +66,7 @@ impl Reported for OutsideCalibration {
 ///
 /// # Errors
 /// [`StudyError`] if this host cannot be calibrated or a scene breaks.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let progress = lab.progress;
     if size == StudySize::Quick {
         let host = default_model()?;
@@ -75,13 +75,13 @@ pub(crate) fn made(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<Finish
         return Ok(model_validation(&host, whose, &effort, progress)?);
     }
     let host = calibrate(25.0, |share| progress(0.5 * share))?;
-    let (whose, occupancies) = (calibrated_now(&host), vec![0.072, 0.24]);
+    let (whose, occupancies) = (fresh_model_title(&host), vec![0.072, 0.24]);
     let effort = ValidationSize { particles: vec![150, 4000], occupancies, rounds: 6, seconds: 15.0 };
     Ok(model_validation(&host, whose, &effort, |share| progress(0.5 + 0.5 * share))?)
 }
 
 /// Description of a model calibrated on this host.
-pub(crate) fn calibrated_now(host: &HostModel) -> String {
+pub(crate) fn fresh_model_title(host: &HostModel) -> String {
     format!("the model of this host, {}, calibrated just before", host.title)
 }
 
@@ -98,16 +98,16 @@ pub(crate) fn model_validation(
     let runs: Vec<BenchRun> = runs(effort).collect();
     // Before discs are placed, which takes long in large scenes.
     for run in &runs {
-        host.admits(run.particles).map_err(OutsideCalibration::of(name(run)))?;
+        host.check_length(run.particles).map_err(OutsideCalibration::of(case_name(run)))?;
         if run.rates().is_some() {
             let amounts = Amounts { steps: 1.0, discs: run.particles as f64, ..Amounts::default() };
-            run.predicted(host, &amounts).map_err(OutsideCalibration::of(name(run)))?;
+            run.predicted(host, &amounts).map_err(OutsideCalibration::of(case_name(run)))?;
         }
     }
     let scenes = runs.into_iter().map(|run| PhaseTimedRun::new(run, &Overrides::new()));
     let mut scenes = scenes.collect::<Result<Vec<_>, _>>()?;
     for scene in &scenes {
-        predicted(host, scene)?;
+        predicted_phases(host, scene)?;
     }
     on_threads(1, || {
         let (start, mut done) = (Instant::now(), 0);
@@ -124,9 +124,9 @@ pub(crate) fn model_validation(
         }
         let mut cases = vec![];
         for scene in &scenes {
-            cases.extend(measured(host, scene)?);
+            cases.extend(measured_cases(host, scene)?);
         }
-        cases.extend(strangers(host)?);
+        cases.extend(uncalibrated_laws(host)?);
         progress(1.0);
         let summary = FrameBuilder::of([host])
             .text("model", |_| &whose)
@@ -150,22 +150,24 @@ fn runs(effort: &ValidationSize) -> impl Iterator<Item = BenchRun> {
     })
 }
 
-fn place(BenchRun { particles, occupancy, precision, .. }: &BenchRun) -> String {
+fn case_label(BenchRun { particles, occupancy, precision, .. }: &BenchRun) -> String {
     format!("{precision}, NP = {particles}, ρ = {occupancy}")
 }
 
-fn name(run: &BenchRun) -> String {
-    format!("{}, {}", run.execution, place(run))
+fn case_name(run: &BenchRun) -> String {
+    format!("{}, {}", run.execution, case_label(run))
 }
 
 /// Predicted nanoseconds of every phase.
-fn predicted(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<f64>, StudyError> {
+fn predicted_phases(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<f64>, StudyError> {
     let run = scene.run;
     let named = EXECUTIONS.iter().find(|(name, _)| *name == run.execution);
     let Some(execution) = named.and_then(|(_, execution)| *execution) else {
-        return run.predicted(host, &scene.amounts()).map_err(OutsideCalibration::of(name(&run)));
+        return run
+            .predicted(host, &scene.amounts_per_step())
+            .map_err(OutsideCalibration::of(case_name(&run)));
     };
-    let (programs, lengths) = step(&scene.checked);
+    let (programs, lengths) = step_of_scene(&scene.checked);
     let outlined = programs.iter().map(|it| (it.part, it.program.outlines(), lengths.range(it.length).len()));
     let outlined: Vec<(Part, Outlines, usize)> = outlined.collect();
     let cycle: Vec<(&Outlines, usize)> = outlined.iter().map(|(_, outlines, n)| (outlines, *n)).collect();
@@ -182,18 +184,19 @@ fn predicted(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<f64>, StudyE
         let own = outlined.iter().filter(|(part, ..)| parts.contains(part));
         own.map(|(_, outlines, n)| host.program(outlines, *n, execution, &around)).sum()
     };
-    Phase::ALL.iter().map(of_phase).collect::<Result<_, _>>().map_err(OutsideCalibration::of(name(&run)))
+    Phase::ALL.iter().map(of_phase).collect::<Result<_, _>>().map_err(OutsideCalibration::of(case_name(&run)))
 }
 
 /// Cases of the phases of a run and of the whole step.
-fn measured(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<ValidationCase>, StudyError> {
-    let phases = Phase::ALL.iter().zip(predicted(host, scene)?).map(|(&phase, predicted)| ValidationCase {
-        place: place(&scene.run),
-        execution: scene.run.execution,
-        phase: phase.name(),
-        predicted,
-        measured: scene.ns(phase),
-    });
+fn measured_cases(host: &HostModel, scene: &PhaseTimedRun) -> Result<Vec<ValidationCase>, StudyError> {
+    let phases =
+        Phase::ALL.iter().zip(predicted_phases(host, scene)?).map(|(&phase, predicted)| ValidationCase {
+            place: case_label(&scene.run),
+            execution: scene.run.execution,
+            phase: phase.name(),
+            predicted,
+            measured: scene.ns(phase),
+        });
     // Not every execution has every phase.
     let mut cases: Vec<ValidationCase> = phases.filter(|case| case.measured > 0.0).collect();
     cases.extend(ValidationCase::step(&cases));

@@ -24,7 +24,7 @@ const SAMPLES: usize = 5;
 const ELEMENTS: usize = 30_000;
 
 /// Measures every law with vectors of every length and with every execution of programs.
-pub(super) fn strangers(host: &HostModel) -> Result<Vec<ValidationCase>, StudyError> {
+pub(super) fn uncalibrated_laws(host: &HostModel) -> Result<Vec<ValidationCase>, StudyError> {
     let mut cases = vec![];
     for n in LENGTHS {
         for (name, half_width) in [("Lennard-Jones, 24 places", 2), ("Lennard-Jones, 120 places", 5)] {
@@ -35,18 +35,18 @@ pub(super) fn strangers(host: &HostModel) -> Result<Vec<ValidationCase>, StudyEr
             let forces = Forces::<f64, _>::new(law, &mask, shape, frame, Coordinates::CellRelative);
             let arrays = [&[Array::X, Array::Y][..], &[Array::Fx, Array::Fy]];
             let place = (shape.swept().start, shape.swept().len(), shape.padded());
-            cases.extend(ran(host, name, &Program::new(forces), arrays, place)?);
+            cases.extend(time_program(host, name, &Program::new(forces), arrays, place)?);
         }
         let shifts = Program::new(Shifts::<f64, _>::new(Gravity::<false> { softening: 0.1 }, 1..17));
         let read: Vec<Array> = BODY_POSITION.into_iter().chain([Array::BodyMass]).collect();
         let arrays = [&read[..], &[Array::BodyFx, Array::BodyFy, Array::BodyFz]];
-        cases.extend(ran(host, "gravity, 16 shifts", &shifts, arrays, (0, n, 2 * n))?);
+        cases.extend(time_program(host, "gravity, 16 shifts", &shifts, arrays, (0, n, 2 * n))?);
     }
     Ok(cases)
 }
 
 /// Runs a program over `n` elements starting at `first` with every execution. All arrays have `length` elements.
-fn ran(
+fn time_program(
     host: &HostModel,
     name: &str,
     program: &dyn Runnable,

@@ -5,7 +5,7 @@ mod pictures;
 use super::StudyError;
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame};
-use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize, side_by_side};
+use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize, run_in_parallel};
 use crate::statistics::MeanWithBar;
 use stripmine_physics::method::lattice_md::keys::{
     EXECUTION, FRICTION, NORMAL_DAMPING, SEARCH, SHEAR_DAMPING,
@@ -31,12 +31,12 @@ const CONTROL: u64 = 40_000;
 const ROWS: usize = 120;
 
 /// Simulates two fifths of the pipe.
-pub(crate) fn short(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn small_pipe(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     Ok(PipeRuns::of("pipe-small", &Overrides::new(), &[1], false, lab)?.made())
 }
 
 /// Simulates the whole pipe, with snapshots as in figure 6.
-pub(crate) fn whole(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn whole_pipe(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let runs = PipeRuns::of("pipe", &Overrides::new(), &[1, 2], true, lab)?;
     let (drawn, made) = (&runs.flows[0], runs.made());
     let made = made.with_picture("figure_5", pictures::piece(drawn));
@@ -44,13 +44,13 @@ pub(crate) fn whole(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Finished
 }
 
 /// Simulates the whole pipe with fewer grains.
-pub(crate) fn thin(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn thin_pipe(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let thin = Overrides::new().set(&PACKING_FRACTION, 0.35);
     Ok(PipeRuns::of("pipe", &thin, &[1, 2], false, lab)?.made())
 }
 
 /// Overrides for a control without waves: an elastic gas without gravity. Its contacts need the shorter step (s).
-pub(super) fn elastic(pipe: &Overrides) -> Overrides {
+pub(super) fn elastic_gas(pipe: &Overrides) -> Overrides {
     let gas = pipe.clone().set(&GRAVITY, [0.0; 2]).set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0);
     gas.set(&FRICTION, 0.0).set(&DT, 5e-5)
 }
@@ -83,14 +83,14 @@ pub(super) struct Flow {
 }
 
 /// Mean over the samples of the last half.
-pub(super) fn late(course: &[f64]) -> MeanWithBar {
-    MeanWithBar::of_course(&course[course.len() - course.len() / 2..])
+pub(super) fn late_mean(course: &[f64]) -> MeanWithBar {
+    MeanWithBar::of_time_series(&course[course.len() - course.len() / 2..])
 }
 
 /// Runs a pipe. `progress` receives the completed share.
 ///
 /// The run uses neighbour lists: they give bits identical to the lattice's (item `identity`) in a third of the time for such a small scene.
-pub(super) fn flow(
+pub(super) fn run_pipe(
     scene: &str,
     overrides: &Overrides,
     seed: u64,
@@ -151,15 +151,15 @@ impl PipeRuns {
         draws: bool,
         lab: &StudyEnvironment<'_>,
     ) -> Result<PipeRuns, StudyError> {
-        let control = elastic(overrides).set(&STEPS, CONTROL);
+        let control = elastic_gas(overrides).set(&STEPS, CONTROL);
         let mut cases: Vec<_> =
             seeds.iter().map(|&seed| (overrides, seed, draws && seed == seeds[0])).collect();
         cases.push((&control, seeds[0], false));
         let meter = ProgressMeter::new(cases.len() as f64, lab.progress);
-        let mut flows = side_by_side(&cases, |&(overrides, seed, keeps_frames)| {
+        let mut flows = run_in_parallel(&cases, |&(overrides, seed, keeps_frames)| {
             let mut before = 0.0;
             let progress = |share| meter.add(share - std::mem::replace(&mut before, share));
-            flow(scene, overrides, seed, keeps_frames, progress)
+            run_pipe(scene, overrides, seed, keeps_frames, progress)
         })?;
         let control = flows.remove(seeds.len());
         let title = overrides.texts().iter().map(|text| format!(", {text}")).collect::<String>();
@@ -173,12 +173,12 @@ impl PipeRuns {
             .text("run", |(name, _)| *name)
             .count("seed", |(_, flow)| flow.seed)
             .number("Fano at the start", 2, |(_, flow)| flow.fano[0])
-            .number("Fano late", 2, |(_, flow)| late(&flow.fano).value)
-            .number("± (95 %)", 2, |(_, flow)| late(&flow.fano).bar)
+            .number("Fano late", 2, |(_, flow)| late_mean(&flow.fano).value)
+            .number("± (95 %)", 2, |(_, flow)| late_mean(&flow.fano).bar)
             .number("mode at the start", 3, |(_, flow)| flow.strongest_mode[0])
-            .number("mode late", 3, |(_, flow)| late(&flow.strongest_mode).value)
-            .number("mean velocity late (m/s)", 3, |(_, flow)| late(&flow.flow).value)
-            .number("± (95 %)", 3, |(_, flow)| late(&flow.flow).bar)
+            .number("mode late", 3, |(_, flow)| late_mean(&flow.strongest_mode).value)
+            .number("mean velocity late (m/s)", 3, |(_, flow)| late_mean(&flow.flow).value)
+            .number("± (95 %)", 3, |(_, flow)| late_mean(&flow.flow).bar)
             .number("spectral power (independent grains: 1)", 2, |(_, flow)| flow.directions.power)
             .number("power against gravity (%)", 0, |(_, flow)| 100.0 * flow.directions.back)
             .number("standing (%)", 0, |(_, flow)| 100.0 * flow.directions.standing)
@@ -188,12 +188,12 @@ impl PipeRuns {
             })
             .text("final state, CRC-32", |(_, flow)| format!("0x{}", flow.checksum))
             .frame("runs", title);
-        let made = FinishedItem::of([runs, self.course(), self.summary()]);
+        let made = FinishedItem::of([runs, self.fano_series(), self.summary()]);
         made.with_picture("density_map", pictures::map(&flows[0])).with_seeds(flows.iter().map(|it| it.seed))
     }
 
     /// Fano factors over time.
-    fn course(&self) -> ResultFrame {
+    fn fano_series(&self) -> ResultFrame {
         let samples = self.flows.iter().flat_map(|flow| {
             let samples = flow.times.iter().zip(&flow.fano).step_by(flow.times.len().div_ceil(2 * ROWS));
             samples.map(|sample| (flow.seed, sample))

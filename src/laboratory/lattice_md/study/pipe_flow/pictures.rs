@@ -17,7 +17,7 @@ const SPIN: f64 = 1.0;
 const SHADE: &str = "rim speed ΩR (m/s)";
 
 fn shape(disc: &Particle, offset: [f64; 2], tint: Tint) -> DrawnShape {
-    let [x, y] = disc.place();
+    let [x, y] = disc.planar_position();
     let tint = if disc.kind == ParticleKind::Wall { Tint::Still } else { tint };
     DrawnShape::Disc { centre: [x + offset[0], y + offset[1]], radius: disc.radius, tint }
 }
@@ -110,7 +110,7 @@ pub(super) fn film(flow: &Flow) -> Film {
     let start = &flow.frames[0];
     let half = half_height(start);
     let frames = shown(flow, FRAMES).map(|(time, particles)| {
-        let disc = |disc: &Particle| (disc.place().map(rounded), rounded(disc.omega * disc.radius));
+        let disc = |disc: &Particle| (disc.planar_position().map(rounded), rounded(disc.omega * disc.radius));
         FilmFrame { time, discs: particles.grains().iter().map(disc).collect() }
     });
     Film {
@@ -120,7 +120,7 @@ pub(super) fn film(flow: &Flow) -> Film {
         sides: vec![],
         falls: true,
         radii: start.grains().iter().map(|disc| disc.radius).collect(),
-        fixed: start.all()[flow.grains..].iter().map(|disc| (disc.place(), disc.radius)).collect(),
+        fixed: start.all()[flow.grains..].iter().map(|disc| (disc.planar_position(), disc.radius)).collect(),
         frames: frames.collect(),
         shade: SHADE.into(),
         shades: [-SPIN, SPIN],

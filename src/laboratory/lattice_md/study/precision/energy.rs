@@ -1,6 +1,6 @@
 //! Energy of undamped discs without friction, which changes only by the integrator or the precision.
 
-use super::gas::{BenchGas, SEEDS, place};
+use super::gas::{BenchGas, SEEDS, bench_overrides};
 use crate::frame::{FrameBuilder, ResultFrame, TableCell};
 use crate::laboratory::lattice_md::study::StudyError;
 use crate::results::{Progress, ProgressMeter};
@@ -51,7 +51,7 @@ pub(super) fn frames(progress: Progress<'_>) -> Result<[ResultFrame; 2], StudyEr
         STEPPINGS.iter().flat_map(|&stepping| PRECISIONS.map(|precision| (stepping, precision))).collect();
     let runs: Vec<_> = cases.iter().flat_map(|&case| SEEDS.map(|seed| (case, seed))).collect();
     let deviations = ProgressMeter::new(runs.len() as f64, progress)
-        .each(&runs, |&((stepping, precision), seed)| deviations(stepping, precision, seed, STEPS))?;
+        .run_cases(&runs, |&((stepping, precision), seed)| deviations(stepping, precision, seed, STEPS))?;
     let over = deviations.chunks(SEEDS.len()).zip(&cases).map(|(runs, ((.., dt), _))| over_seeds(*dt, runs));
     let cases: Vec<_> = cases.iter().zip(over).collect();
     let samples = cases.iter().flat_map(|(case, over)| over.deviations.iter().map(move |at| (case, at)));
@@ -113,7 +113,7 @@ fn deviations(
     seed: u64,
     steps: u64,
 ) -> Result<Vec<f64>, StudyError> {
-    let place = place(PARTICLES, PACKING_FRACTION, seed);
+    let place = bench_overrides(PARTICLES, PACKING_FRACTION, seed);
     let undamped = place.set(&NORMAL_DAMPING, 0.0).set(&SHEAR_DAMPING, 0.0).set(&FRICTION, 0.0);
     let discs = BenchGas::equilibrated(&undamped)?;
     let overrides = undamped.set(&DT, dt).set(&ENGINE, EngineChoice::Fast).set(&PRECISION, precision);

@@ -1,6 +1,6 @@
 //! Force errors on one configuration of discs, against the size of the box.
 
-use super::gas::{BenchGas, PACKING_FRACTIONS, place};
+use super::gas::{BenchGas, PACKING_FRACTIONS, bench_overrides};
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::laboratory::lattice_md::study::StudyError;
 use stripmine_kernels::sweep::lattice::Coordinates::{self, Absolute, CellRelative};
@@ -41,7 +41,7 @@ pub(super) fn frame(progress: impl Fn(f64)) -> Result<ResultFrame, StudyError> {
     let mut all = Vec::new();
     for packing_fraction in PACKING_FRACTIONS {
         for particles in PARTICLES {
-            all.push(on_one_configuration(packing_fraction, particles)?);
+            all.push(compare_forces(packing_fraction, particles)?);
             progress(all.len() as f64 / (PACKING_FRACTIONS.len() * PARTICLES.len()) as f64);
         }
     }
@@ -57,12 +57,12 @@ pub(super) fn frame(progress: impl Fn(f64)) -> Result<ResultFrame, StudyError> {
         .frame("forces", "Errors of the forces on one configuration"))
 }
 
-fn on_one_configuration(packing_fraction: f64, count: usize) -> Result<ForceErrors, StudyError> {
-    let place = place(count, packing_fraction, 1);
+fn compare_forces(packing_fraction: f64, count: usize) -> Result<ForceErrors, StudyError> {
+    let place = bench_overrides(count, packing_fraction, 1);
     let discs = BenchGas::equilibrated(&place)?;
     let computed = |(_, precision, engine, coordinates): ForceVariant| {
         let overrides = place.clone().set(&PRECISION, precision).set(&ENGINE, engine);
-        BenchGas::seen_from(coordinates, &overrides, Some(&discs))
+        BenchGas::with_coordinates(coordinates, &overrides, Some(&discs))
     };
     let reference = computed(("f64, fast", "f64", "fast", CellRelative))?;
     let (exact, domain) = (reference.method.forces(), reference.scenery.domain);
@@ -102,7 +102,7 @@ mod tests {
     /// In lower precision errors do not depend on the size of the box, unless positions are relative to its corner.
     #[test]
     fn cell_relative_errors_are_independent_of_the_box() {
-        let [small, large] = [400, 6400].map(|count| on_one_configuration(0.84, count).unwrap());
+        let [small, large] = [400, 6400].map(|count| compare_forces(0.84, count).unwrap());
         let rms = |it: &ForceErrors, name: &str| {
             it.errors[VARIANTS.iter().position(|(variant, ..)| *variant == name).unwrap()][0]
         };

@@ -27,12 +27,12 @@ pub(super) struct BenchGas {
 impl BenchGas {
     /// Starts the bench scene with overrides, from `discs` if given.
     pub(super) fn begin(overrides: &Overrides, discs: Option<&Particles>) -> Result<BenchGas, StudyError> {
-        BenchGas::seen_from(Coordinates::CellRelative, overrides, discs)
+        BenchGas::with_coordinates(Coordinates::CellRelative, overrides, discs)
     }
 
     /// Starts with positions relative to the cell or to the corner of the box, even if `scene check` rejects single precision because
     /// particles would stop moving.
-    pub(super) fn seen_from(
+    pub(super) fn with_coordinates(
         coordinates: Coordinates,
         overrides: &Overrides,
         discs: Option<&Particles>,
@@ -59,7 +59,7 @@ impl BenchGas {
 }
 
 /// Overrides for the number of discs, the packing fraction and the seed.
-pub(super) fn place(count: usize, packing_fraction: f64, seed: u64) -> Overrides {
+pub(super) fn bench_overrides(count: usize, packing_fraction: f64, seed: u64) -> Overrides {
     let scene = Overrides::new().set(&COUNT, count).set(&PACKING_FRACTION, packing_fraction);
     scene.set(&SEED, seed).set(&SEARCH, SearchKind::Lattice)
 }

@@ -12,7 +12,7 @@ use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use gas::SEEDS;
 
 /// Measures force errors, energies of undamped gases, and divergence of trajectories.
-pub(crate) fn made(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
+pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     // Approximate shares of the time.
     let (forces_end, trajectories_end) = (0.3, 0.4);
     let forces = forces::frame(|share| (lab.progress)(forces_end * share))?;

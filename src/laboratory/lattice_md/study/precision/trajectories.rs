@@ -1,9 +1,9 @@
 //! Divergence of trajectories from one start in different precisions: collisions amplify every error.
 
-use super::gas::{BenchGas, PACKING_FRACTIONS, SEEDS, place};
+use super::gas::{BenchGas, PACKING_FRACTIONS, SEEDS, bench_overrides};
 use crate::frame::{FrameBuilder, ResultFrame, TableCell};
 use crate::laboratory::lattice_md::study::StudyError;
-use crate::results::side_by_side;
+use crate::results::run_in_parallel;
 use crate::statistics::{RunSpread, slope};
 use stripmine_physics::method::lattice_md::keys::{ENGINE, INTEGRATOR};
 use stripmine_physics::method::lattice_md::options::IntegratorKind;
@@ -29,8 +29,9 @@ const LOST: f64 = 0.02;
 pub(super) fn frames() -> Result<[ResultFrame; 2], StudyError> {
     let starts: Vec<(f64, u64)> =
         PACKING_FRACTIONS.iter().flat_map(|&fraction| SEEDS.map(|seed| (fraction, seed))).collect();
-    let runs =
-        side_by_side(&starts, |&(fraction, seed)| distances(&place(PARTICLES, fraction, seed), STEPS))?;
+    let runs = run_in_parallel(&starts, |&(fraction, seed)| {
+        distances(&bench_overrides(PARTICLES, fraction, seed), STEPS)
+    })?;
     let times: Vec<f64> = (1..=STEPS / STRIDE).map(|sample| (sample * STRIDE) as f64 * DT).collect();
     // Packing fraction; variant; RMS distance between a disc and its twin over discs and seeds, at each sample; rate of exponential growth
     // between PARTED and LOST.
@@ -40,7 +41,7 @@ pub(super) fn frames() -> Result<[ResultFrame; 2], StudyError> {
             let square = |sample: usize| runs.iter().map(move |run| run[rival][sample] * run[rival][sample]);
             let mean_square = |sample: usize| square(sample).sum::<f64>() / runs.len() as f64;
             let distances: Vec<f64> = (0..times.len()).map(|sample| mean_square(sample).sqrt()).collect();
-            let rates: Vec<f64> = runs.iter().map(|run| growth(&times, &run[rival])).collect();
+            let rates: Vec<f64> = runs.iter().map(|run| growth_rate(&times, &run[rival])).collect();
             all.push((*fraction, variant, distances, RunSpread::of(&rates)));
         }
     }
@@ -83,7 +84,7 @@ fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], 
             gas.advance(STRIDE)?;
             let here = gas.method.particles();
             let squares = here.all().iter().zip(there.all()).map(|(a, b)| {
-                let [dx, dy] = gas.scenery.domain.displacement(a.place(), b.place());
+                let [dx, dy] = gas.scenery.domain.displacement(a.planar_position(), b.planar_position());
                 dx * dx + dy * dy
             });
             distances.push((squares.sum::<f64>() / there.len() as f64).sqrt());
@@ -93,7 +94,7 @@ fn distances(place: &Overrides, steps: u64) -> Result<[Vec<f64>; RIVALS.len()], 
 }
 
 /// Rate of exponential growth of a distance between the limits set by [`PARTED`] and [`LOST`].
-fn growth(times: &[f64], distances: &[f64]) -> f64 {
+fn growth_rate(times: &[f64], distances: &[f64]) -> f64 {
     let first = distances.first().copied().unwrap_or(0.0);
     let points = times.iter().zip(distances).skip_while(|(_, distance)| **distance <= PARTED * first);
     let growing = points.take_while(|(_, distance)| **distance < LOST);
@@ -110,14 +111,14 @@ mod tests {
     fn growth_rate_of_an_exponential_is_recovered() {
         let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
         let distances: Vec<f64> = times.iter().map(|t| (1e-12 + 1e-13 * (2.0 * t).exp()).min(0.3)).collect();
-        assert!((growth(&times, &distances) - 2.0).abs() < 0.05);
-        assert_eq!(growth(&[], &[]), 0.0);
+        assert!((growth_rate(&times, &distances) - 2.0).abs() < 0.05);
+        assert_eq!(growth_rate(&[], &[]), 0.0);
     }
 
     /// Trajectories diverge earlier at lower precision, starting from an error of the size of rounding.
     #[test]
     fn lower_precision_diverges_earlier() {
-        let [double, mixed, single] = distances(&place(PARTICLES, 0.84, 1), 200).unwrap();
+        let [double, mixed, single] = distances(&bench_overrides(PARTICLES, 0.84, 1), 200).unwrap();
         for sample in 0..2 {
             assert!(double[sample] < 1e-3 * mixed[sample] && mixed[sample] < single[sample]);
         }

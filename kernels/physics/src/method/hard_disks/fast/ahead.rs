@@ -10,15 +10,15 @@ const AHEAD: [usize; 3] = [40, 24, 12];
 impl Fast {
     /// Prefetches the data of the next events: first the cache lines of their discs, then those of the discs around them.
     #[inline(always)]
-    pub(super) fn look_ahead(&self) {
+    pub(super) fn prefetch_next_events(&self) {
         let Fast { discs, lists, queue, partners, .. } = self;
-        if let Some(disc) = queue.coming(AHEAD[0]) {
+        if let Some(disc) = queue.upcoming_disc(AHEAD[0]) {
             let disc = disc as usize;
             discs.prefetch(disc);
             partners.prefetch(disc);
             lists.prefetch(disc);
         }
-        if let Some(disc) = queue.coming(AHEAD[1]) {
+        if let Some(disc) = queue.upcoming_disc(AHEAD[1]) {
             let with = partners[disc as usize].with as usize;
             lists.prefetch(with);
             for &other in lists.of(disc) {
@@ -26,7 +26,7 @@ impl Fast {
                 queue.prefetch(other as usize);
             }
         }
-        if let Some(disc) = queue.coming(AHEAD[2]) {
+        if let Some(disc) = queue.upcoming_disc(AHEAD[2]) {
             match partners[disc as usize].with {
                 RENEWAL => lists.of(disc).iter().for_each(|&other| lists.prefetch(other as usize)),
                 with if (with as usize) < discs.len() => {

@@ -1,6 +1,6 @@
 //! State of the fast engine in a checkpoint, and resumption from it.
 
-use super::leaving::leaving;
+use super::leaving::leaving_time;
 use super::lists::DiscNeighbourLists;
 use super::queue::EventQueue;
 use super::{ExpectedEvent, Fast, LISTED, WALL};
@@ -20,13 +20,13 @@ const RESOLVED: f64 = 1e3;
 
 impl Fast {
     /// Returns the state for a checkpoint, in the order of the discs' numbers.
-    pub(super) fn kept(&self) -> Snapshot {
+    pub(super) fn engine_snapshot(&self) -> Snapshot {
         let mut kept = Snapshot::default();
         let by_number = |of: &dyn Fn(u32) -> f64| {
             CheckpointColumn::F64(self.places.iter().map(|&place| of(place)).collect())
         };
         for (axis, name) in REGISTERED.into_iter().enumerate() {
-            kept.add_column(name, by_number(&|place| self.lists.place(place)[axis]));
+            kept.add_column(name, by_number(&|place| self.lists.registered_position(place)[axis]));
         }
         kept.add_column("expected.time", by_number(&|place| self.queue.times()[place as usize]));
         let expected = || self.places.iter().map(|&place| self.partners[place as usize]);
@@ -128,8 +128,9 @@ impl Fast {
             let within = match self.arena.space.gravity() {
                 Some([gx, gy]) => (2.0 * limit / gx.hypot(gy)).sqrt(),
                 None => {
-                    let listed_at = self.lists.place(place as u32);
-                    leaving(&self.arena, &self.discs[place], listed_at, limit, (now, f64::INFINITY)) - now
+                    let listed_at = self.lists.registered_position(place as u32);
+                    leaving_time(&self.arena, &self.discs[place], listed_at, limit, (now, f64::INFINITY))
+                        - now
                 }
             };
             if times[number as usize] - now > within + 1e-9 * now.abs() {

@@ -102,7 +102,7 @@ impl DiscNeighbourLists {
 
     /// Registered position of a disc (length).
     #[inline(always)]
-    pub(super) fn place(&self, disc: u32) -> [f64; 2] {
+    pub(super) fn registered_position(&self, disc: u32) -> [f64; 2] {
         self.places[disc as usize]
     }
 

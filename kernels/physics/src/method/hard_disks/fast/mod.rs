@@ -32,12 +32,12 @@ use crate::method::Snapshot;
 use crate::method::hard_disks::engine::{EngineError, EventEngine, ExecutedEvent};
 use crate::method::hard_disks::event::Arena;
 use crate::method::hard_disks::operations::Operations;
-use leaving::{free_path, leaving};
+use leaving::{free_path, leaving_time};
 use lists::DiscNeighbourLists;
 use queue::EventQueue;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_native};
-use stripmine_kernels::flight::{EarliestCollision, FlyingDisc, MOST_PARTNERS, ROW_UNIT, earliest};
+use stripmine_kernels::flight::{EarliestCollision, FlyingDisc, MOST_PARTNERS, ROW_UNIT, earliest_collision};
 use stripmine_kernels::isa::AlignedColumn;
 
 /// Average number of discs in a list.
@@ -166,7 +166,7 @@ impl Fast {
     fn sort(&mut self, time: f64) {
         let edge = 2.0 * (self.largest + self.displacement_limit);
         let key = |disc: &FlyingDisc| {
-            let at = self.arena.place(disc, time);
+            let at = self.arena.position_at(disc, time);
             let [x, y] =
                 [0, 1].map(|axis| spread(((at[axis] - self.arena.domain.origin[axis]) / edge) as u32));
             x | y << 1
@@ -188,7 +188,8 @@ impl Fast {
     fn predict<R: Registers<Lane = f64>>(&mut self, registers: R, disc: u32, now: f64) {
         let Fast { arena, discs, numbers, lists, queue, partners, met, operations, .. } = self;
         let (row, count) = lists.row(disc);
-        let found = earliest(registers, &arena.space, discs, queue.times(), (disc, row, count), now, met);
+        let found =
+            earliest_collision(registers, &arena.space, discs, queue.times(), (disc, row, count), now, met);
         let EarliestCollision { time, partners: first, mut surprised } = found;
         operations.predictions += count as u64;
         operations.searches += 1;
@@ -211,7 +212,13 @@ impl Fast {
         if at_wall < next {
             (next, with) = (at_wall, WALL[axis]);
         }
-        let leaves = leaving(arena, own, lists.place(disc), lists.displacement_limit(), (now, next));
+        let leaves = leaving_time(
+            arena,
+            own,
+            lists.registered_position(disc),
+            lists.displacement_limit(),
+            (now, next),
+        );
         if leaves < next {
             (next, with) = (leaves, RENEWAL);
         }
@@ -277,7 +284,7 @@ impl Fast {
                 return Ok(None);
             }
             if self.discs.len() > ahead::OUT_OF_REACH {
-                self.look_ahead();
+                self.prefetch_next_events();
             }
             if time < self.time {
                 return Err(EngineError::BackInTime(self.numbers[first as usize], time, self.time));
@@ -359,7 +366,7 @@ impl EventEngine for Fast {
     }
 
     fn snapshot(&self) -> Snapshot {
-        self.kept()
+        self.engine_snapshot()
     }
 
     fn restore(&mut self, discs: Vec<FlyingDisc>, kept: &Snapshot) -> Result<(), String> {

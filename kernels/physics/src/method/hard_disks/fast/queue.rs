@@ -178,7 +178,7 @@ impl EventQueue {
 
     /// Index of the disc whose event is `ahead` events after the next one, if that is sorted already.
     #[inline(always)]
-    pub(crate) fn coming(&self, ahead: usize) -> Option<u32> {
+    pub(crate) fn upcoming_disc(&self, ahead: usize) -> Option<u32> {
         self.next.get(self.over + ahead).map(|entry| entry.place)
     }
 

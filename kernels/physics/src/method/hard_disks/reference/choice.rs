@@ -30,7 +30,7 @@ pub(crate) fn candidates(domain: &Domain, radii: [f64; 2], count: usize) -> Vec<
     let of = |name: &&'static str| {
         let mask = mask(name)?;
         let slack = sizes.reach(&mask) - 2.0 * radii[1];
-        let serves = sizes.bears(domain, &mask) && slack > 0.0;
+        let serves = sizes.is_wide_enough(domain, &mask) && slack > 0.0;
         let places = mask.offsets().len() as f64;
         // Reading an empty cell costs a fifth of a prediction.
         let around = places * (occupancy + EMPTY);

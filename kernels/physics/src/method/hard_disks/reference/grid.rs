@@ -45,7 +45,7 @@ impl ExclusiveGridSize {
     }
 
     /// True if periodic sides have enough cells for a mask not to overlap itself.
-    pub(crate) fn bears(&self, domain: &Domain, mask: &Mask) -> bool {
+    pub(crate) fn is_wide_enough(&self, domain: &Domain, mask: &Mask) -> bool {
         let least = 2 * mask.half_width() as usize + 1;
         (0..2).all(|axis| !domain.is_periodic(axis) || self.cells[axis] >= least)
     }
@@ -60,7 +60,7 @@ pub(crate) trait DiscCells: Send {
     fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit>;
 
     /// Position of a disc at the last fill (length).
-    fn place(&self, disc: u32) -> [f64; 2];
+    fn position_at_fill(&self, disc: u32) -> [f64; 2];
 
     /// Iterates over the discs in the mask around one.
     fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_;
@@ -151,7 +151,7 @@ impl DiscCells for ExclusiveGrid {
     }
 
     #[inline(always)]
-    fn place(&self, disc: u32) -> [f64; 2] {
+    fn position_at_fill(&self, disc: u32) -> [f64; 2] {
         self.places[disc as usize]
     }
 
@@ -186,7 +186,10 @@ mod tests {
         ] {
             let domain = Domain::planar([-1.0, 2.0], [14.0, 11.3], periodic);
             let sizes = ExclusiveGridSize::new(&domain, 0.5);
-            assert!(sizes.bears(&domain, &mask) && sizes.edge.iter().all(|edge| *edge < 0.5 * 2f64.sqrt()));
+            assert!(
+                sizes.is_wide_enough(&domain, &mask)
+                    && sizes.edge.iter().all(|edge| *edge < 0.5 * 2f64.sqrt())
+            );
             let mut discs: Vec<[f64; 2]> = vec![];
             while discs.len() < 60 {
                 let at =

@@ -98,7 +98,7 @@ impl DiscCells for HalfSpaceGrid {
         Ok(())
     }
 
-    fn place(&self, disc: u32) -> [f64; 2] {
+    fn position_at_fill(&self, disc: u32) -> [f64; 2] {
         self.places[disc as usize]
     }
 

@@ -14,7 +14,7 @@ use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
 use grid::{CellMisfit, DiscCells, ExclusiveGrid, ExclusiveGridSize};
 use half_space::HalfSpaceGrid;
-use stripmine_kernels::flight::{FlyingDisc, Space, meeting};
+use stripmine_kernels::flight::{FlyingDisc, Space, collision_time};
 use stripmine_kernels::mask::Mask;
 use tournament::TournamentTree;
 
@@ -137,14 +137,14 @@ impl<C: DiscCells> ReferenceEngine<C> {
         self.since + self.slack / (2.0 * self.fastest)
     }
 
-    fn happen(&mut self, first: u32, event: PredictedEvent) -> ExecutedEvent {
+    fn execute_event(&mut self, first: u32, event: PredictedEvent) -> ExecutedEvent {
         let PredictedEvent { time, with } = event;
         match with {
             EventPartner::Wall(axis) => {
                 let disc = &mut self.discs[first as usize];
                 let happened = ExecutedEvent::at_wall(&self.arena, (first, disc), axis, time);
-                self.heed(first);
-                self.repair([first, first]);
+                self.update_speed_bound(first);
+                self.repredict([first, first]);
                 happened
             }
             EventPartner::Disc(other) => {
@@ -152,16 +152,16 @@ impl<C: DiscCells> ReferenceEngine<C> {
                 let (left, right) = self.discs.split_at_mut(b as usize);
                 let pair = ((a, &mut left[a as usize]), (b, &mut right[0]));
                 let happened = ExecutedEvent::collision(&self.arena, pair.0, pair.1, time);
-                self.heed(a);
-                self.heed(b);
-                self.repair([a, b]);
+                self.update_speed_bound(a);
+                self.update_speed_bound(b);
+                self.repredict([a, b]);
                 happened
             }
         }
     }
 
     /// Applies the dynamic upper cut-off: a new fastest disc shortens the time for which the masks are complete.
-    fn heed(&mut self, disc: u32) {
+    fn update_speed_bound(&mut self, disc: u32) {
         let speed = self.speed(&self.discs[disc as usize]);
         if speed > self.fastest {
             self.slack -= 2.0 * self.fastest * (self.time - self.since);
@@ -177,7 +177,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
     }
 
     /// Finds the next events of discs whose motion has changed, and of the discs that expected to meet them.
-    fn repair(&mut self, changed: [u32; 2]) {
+    fn repredict(&mut self, changed: [u32; 2]) {
         let [a, b] = changed;
         let mut lost = std::mem::take(&mut self.lost);
         let (now, horizon) = (self.time, self.horizon());
@@ -211,7 +211,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
             self.operations.searches += 1;
             self.operations.repairs += 1;
             self.operations.predictions += self.grid.around(disc).count() as u64;
-            self.renew(disc, self.predicted(disc));
+            self.renew(disc, self.predicted_event(disc));
         }
         self.lost = lost;
     }
@@ -230,7 +230,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
     }
 
     /// Predicts the next event of a disc among all discs in its mask.
-    fn predicted(&self, disc: u32) -> PredictedEvent {
+    fn predicted_event(&self, disc: u32) -> PredictedEvent {
         let horizon = self.horizon();
         self.grid.around(disc).fold(self.at_wall(disc), |next, other| {
             let time = pair(&self.arena.space, &self.discs, [disc, other], self.time, horizon);
@@ -249,7 +249,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
 
     /// Fills the grid with the discs at a time, and predicts the next event of each.
     fn remap(&mut self, time: f64) -> Result<(), EngineError> {
-        self.fill(self.discs.iter().map(|disc| self.arena.place(disc, time)).collect())?;
+        self.fill(self.discs.iter().map(|disc| self.arena.position_at(disc, time)).collect())?;
         self.time = time;
         self.since = time;
         self.slack = self.whole_slack;
@@ -270,9 +270,10 @@ impl<C: DiscCells> ReferenceEngine<C> {
         let ReferenceEngine { grid, discs, events, arena, speeds, operations, .. } = self;
         // Visit each pair once, and only if it can meet before the horizon.
         for disc in 0..discs.len() as u32 {
-            let (own, speed, here) = (&discs[disc as usize], speeds[disc as usize], grid.place(disc));
+            let (own, speed, here) =
+                (&discs[disc as usize], speeds[disc as usize], grid.position_at_fill(disc));
             for other in grid.around(disc).filter(|&other| other > disc) {
-                let [dx, dy] = arena.domain.displacement(here, grid.place(other));
+                let [dx, dy] = arena.domain.displacement(here, grid.position_at_fill(other));
                 let reach = own.radius + discs[other as usize].radius;
                 let near = (reach + (speed + speeds[other as usize]) * ahead) * ROUNDED_UP;
                 if dx * dx + dy * dy > near * near {
@@ -321,7 +322,7 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
                 return Err(EngineError::BackInTime(first, event.time, self.time));
             }
             self.time = event.time;
-            return Ok(Some(self.happen(first, event)));
+            return Ok(Some(self.execute_event(first, event)));
         }
     }
 
@@ -336,7 +337,7 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
     fn snapshot(&self) -> Snapshot {
         let mut kept = Snapshot::default();
         for (axis, name) in FILLED_AT.into_iter().enumerate() {
-            let along = (0..self.discs.len() as u32).map(|disc| self.grid.place(disc)[axis]);
+            let along = (0..self.discs.len() as u32).map(|disc| self.grid.position_at_fill(disc)[axis]);
             kept.add_column(name, CheckpointColumn::F64(along.collect()));
         }
         let ReferenceEngine { time, slack, since, fastest, filled, remaps, .. } = *self;
@@ -356,7 +357,7 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
         (self.time, self.slack, self.since, self.fastest) = (time?, slack?, since?, fastest?);
         (self.filled, self.remaps) = (filled?, kept.count("engine.remaps")?);
         self.discs = discs;
-        self.events = (0..count as u32).map(|disc| self.predicted(disc)).collect();
+        self.events = (0..count as u32).map(|disc| self.predicted_event(disc)).collect();
         let events = &self.events;
         self.tree.renew(events.len(), |disc| events[disc as usize].time);
         Ok(())
@@ -371,5 +372,5 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
 #[inline(always)]
 fn pair(space: &Space, discs: &[FlyingDisc], [disc, other]: [u32; 2], now: f64, horizon: f64) -> f64 {
     let [a, b] = [disc.min(other), disc.max(other)];
-    meeting(space, &discs[a as usize], &discs[b as usize], now, horizon)
+    collision_time(space, &discs[a as usize], &discs[b as usize], now, horizon)
 }

@@ -12,7 +12,7 @@ use crate::scene::{
     COUNT, DiscStart, FILE, Key, MistakeKind, Precision, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SIDES,
     SceneError, Spot, WALL_RADIUS,
 };
-use crate::start::readable;
+use crate::start::rounded_to_nine_digits;
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
@@ -182,7 +182,7 @@ fn search(
         Ok(grid) => Ok((skin, grid.frame.edge)),
         Err(cause) => {
             let spot =
-                if document.values.gives(key) { document.values.spot(key) } else { box_spot(document) };
+                if document.values.is_given(key) { document.values.spot(key) } else { box_spot(document) };
             let error = spot.error(MistakeKind::Geometry, cause.to_string());
             Err(error.advising("make the box larger, lower search.skin, or set search.by = \"lattice\""))
         }
@@ -216,29 +216,37 @@ fn lattice(
              cells and would be missed in cells wider than {WIDEST} of the largest diameter"
         );
         let error = document.values.spot(&CELL_EDGE).error(MistakeKind::Geometry, message);
-        return Err(vec![error.expecting(format!("an edge of at most {} (length)", readable(widest)))]);
+        return Err(vec![
+            error.expecting(format!("an edge of at most {} (length)", rounded_to_nine_digits(widest))),
+        ]);
     }
     if wanted * SLACK < bounds.least || wanted > bounds.most() * SLACK {
         let width = 2 * bounds.half_width + 1;
         let (message, why) = if wanted < bounds.least {
-            let reach = readable(f64::from(bounds.half_width) * wanted);
+            let reach = rounded_to_nine_digits(f64::from(bounds.half_width) * wanted);
             (
                 format!("`search.cell_edge` = {wanted} is too small: a {width}×{width} mask reaches {reach}"),
-                format!("but contacts reach {}", readable(f64::from(bounds.half_width) * bounds.least)),
+                format!(
+                    "but contacts reach {}",
+                    rounded_to_nine_digits(f64::from(bounds.half_width) * bounds.least)
+                ),
             )
         } else {
             (
                 format!(
                     "`search.cell_edge` = {wanted} is too large: the diagonal of a cell is {}",
-                    readable(wanted * std::f64::consts::SQRT_2)
+                    rounded_to_nine_digits(wanted * std::f64::consts::SQRT_2)
                 ),
-                format!("but centres may come as close as {}", readable(bounds.diagonal)),
+                format!("but centres may come as close as {}", rounded_to_nine_digits(bounds.diagonal)),
             )
         };
         let error =
             document.values.spot(&CELL_EDGE).error(MistakeKind::Geometry, format!("{message}, {why}"));
-        let range =
-            format!("an edge from {} to {} (length)", readable(bounds.least), readable(bounds.most()));
+        let range = format!(
+            "an edge from {} to {} (length)",
+            rounded_to_nine_digits(bounds.least),
+            rounded_to_nine_digits(bounds.most())
+        );
         return Err(vec![error.expecting(range)]);
     }
     // Indices are 32-bit, and beyond 2^53 counting stops.
@@ -278,8 +286,8 @@ fn lattice(
              of at most {}",
             domain.length(0),
             domain.length(1),
-            readable(bounds.least),
-            readable(bounds.diagonal)
+            rounded_to_nine_digits(bounds.least),
+            rounded_to_nine_digits(bounds.diagonal)
         );
         let error = box_spot(document).error(MistakeKind::Geometry, message);
         return Err(vec![error.advising("make the box a little larger, or lower law.max_penetration")]);
@@ -306,17 +314,17 @@ fn short_side(document: &GranularDocument, domain: &Domain, axis: usize, bounds:
         let message = format!(
             "the periodic side along {name} is {side} long and fits {fit} cells of at least {}; a {needed}×{needed} \
              mask needs {needed} of them, or pairs would be visited twice",
-            readable(bounds.least)
+            rounded_to_nine_digits(bounds.least)
         );
-        let least = readable(f64::from(needed) * bounds.least);
+        let least = rounded_to_nine_digits(f64::from(needed) * bounds.least);
         box_spot(document)
             .error(MistakeKind::Geometry, message)
             .expecting(format!("a side of at least {least}"))
     } else {
         let message = format!(
             "no whole number of cells fills the side along {name}, {side} long: a cell must be {} to {} long",
-            readable(bounds.least),
-            readable(bounds.longest())
+            rounded_to_nine_digits(bounds.least),
+            rounded_to_nine_digits(bounds.longest())
         );
         box_spot(document).error(MistakeKind::Geometry, message)
     };
@@ -326,7 +334,7 @@ fn short_side(document: &GranularDocument, domain: &Domain, axis: usize, bounds:
 /// Error of radii that differ too much for every mask, or for the requested one.
 fn ratio_error(document: &GranularDocument, radii: [f64; 2]) -> SceneError {
     let scene = &document.scene;
-    let [smallest, largest] = radii.map(readable);
+    let [smallest, largest] = radii.map(rounded_to_nine_digits);
     let penetration = scene.law.max_penetration;
     // 2 R_max/h ≤ (1 − p)·2 R_min/√2.
     let limit = |half_width: f64| half_width * (1.0 - penetration) / std::f64::consts::SQRT_2;
@@ -369,6 +377,6 @@ fn ratio_spot(document: &GranularDocument) -> Spot {
         }
         _ => &[&WALL_RADIUS, &RADII, &RADIUS_CUT, &RADIUS],
     };
-    let given = keys.iter().find(|key| document.values.gives(key)).unwrap_or(&keys[0]);
+    let given = keys.iter().find(|key| document.values.is_given(key)).unwrap_or(&keys[0]);
     document.values.spot(given)
 }

@@ -66,7 +66,7 @@ impl CheckedGranularScene {
     pub(super) fn on_lattice(&self) -> Option<CheckedGranularScene> {
         let mut scene = self.scene.clone();
         scene.search.by = SearchKind::Lattice;
-        let document = GranularDocument { scene, values: SceneValues::of_no_text(&VOCABULARY) };
+        let document = GranularDocument { scene, values: SceneValues::without_text(&VOCABULARY) };
         let geometry =
             geometry::fit(&document, &self.domain, self.geometry.radii, self.particles.len()).ok()?;
         Some(CheckedGranularScene { scene: document.scene, geometry, ..self.clone() })
@@ -89,7 +89,7 @@ impl GranularScene {
     /// [`SceneErrors`]: every violated precondition.
     pub fn check(&self) -> Result<CheckedGranularScene, SceneErrors> {
         check(
-            GranularDocument { scene: self.clone(), values: SceneValues::of_no_text(&VOCABULARY) },
+            GranularDocument { scene: self.clone(), values: SceneValues::without_text(&VOCABULARY) },
             AcceptedSteps::Foreseen,
         )
     }
@@ -102,7 +102,7 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
     let GranularDocument { scene, values } = &document;
     let stated =
         StatedStart { values, domain: &scene.domain, start: &scene.start, walls: scene.walls, compress };
-    let made = match start::make(&stated) {
+    let made = match start::create_initial_state(&stated) {
         Ok(made) => Some(made),
         Err(error) => {
             errors.push(error);
@@ -139,7 +139,7 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
         AcceptedSteps::Foreseen => errors.extend(refusals.into_iter().map(|refusal| refusal.error)),
         AcceptedSteps::Any => tolerated.extend(refusals.into_iter().map(Warning::from)),
     }
-    SceneErrors::none_of(errors)?;
+    SceneErrors::ok_if_empty(errors)?;
     let (Some(InitialState { domain, particles, mut warnings }), Some(geometry)) = (made, geometry) else {
         // A missing part has already reported an error above.
         let error =

@@ -14,7 +14,7 @@ use crate::scene::{
     DT, GRAVITY, INSTRUCTION_SET, Key, MistakeKind, PERIODIC, PRECISION, Precision, SceneError, WallMotion,
     Warning,
 };
-use crate::start::noun;
+use crate::start::disc_noun;
 use serde::Serialize;
 use stripmine_kernels::sweep::lattice::Coordinates;
 
@@ -163,7 +163,7 @@ pub(super) fn long_steps(
         && scene.integrator.on_long_step == OnLongStep::Stop
         && speed(disc) * dt > limit
     {
-        let (what, speed) = (noun(disc.kind), speed(disc));
+        let (what, speed) = (disc_noun(disc.kind), speed(disc));
         let message = format!(
             "{what} {} moves at {speed}, {} in a step; beyond {limit}, contacts deeper than law.max_penetration = {} \
              could be missed between two steps",

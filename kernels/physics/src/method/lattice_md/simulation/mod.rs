@@ -7,7 +7,7 @@ mod saved;
 
 use super::neighbor_list::ScalarLists;
 use super::options::ProgramVersion;
-use super::programs::{programs_of, rival_ledger_of, scales};
+use super::programs::{neighbour_list_ledger_of, programs_of, scales};
 use super::walls::walls_at;
 use super::{
     ContactSearch, GranularModel, Part, ProgramArrays, ProgramExecution, StepProgram, execute, ledger,
@@ -158,7 +158,8 @@ impl<S: backend::Precision, P: backend::Precision> PerParticle for LatticeMd<S, 
         if !crossings.follows(&domain) {
             return vec![];
         }
-        let image = |(number, disc): (usize, &Particle)| crossings.image(&domain, number, disc.place());
+        let image =
+            |(number, disc): (usize, &Particle)| crossings.image(&domain, number, disc.planar_position());
         self.unwrapped().all().iter().enumerate().map(image).collect()
     }
 }
@@ -217,7 +218,7 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
                 SweepReport { deep, dissipated: self.power_on_lattice(), ..SweepReport::default() }
             }
             Some(mut rival) => {
-                timings.time(Phase::Index, || rival.keep(&self.model, &self.arrays));
+                timings.time(Phase::Index, || rival.update_lists(&self.model, &self.arrays));
                 timings.time(Phase::Forces, || rival.forces(&self.model, &mut self.arrays));
                 let deep = std::mem::take(&mut rival.met.deep).into_iter();
                 let deep = deep.map(|(disc, partner)| [disc as u32, partner as u32]).collect();
@@ -300,7 +301,7 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
     }
 
     fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
-        self.take_up(columns)?;
+        self.restore_columns(columns)?;
         self.elapsed.steps = steps;
         self.move_walls(self.elapsed.time());
         Ok(())
@@ -309,7 +310,7 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
     fn ledger(&self) -> Ledger {
         match self.rival {
             None => ledger(&self.programs),
-            Some(_) => rival_ledger_of::<S, P>(&self.model),
+            Some(_) => neighbour_list_ledger_of::<S, P>(&self.model),
         }
     }
 

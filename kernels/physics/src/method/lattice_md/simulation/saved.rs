@@ -40,16 +40,16 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
     }
 
     /// Restores columns that [`saved`](Self::saved) returned.
-    pub(super) fn take_up(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
+    pub(super) fn restore_columns(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         let expected: Vec<Array> = self.arrays.states().map(|(array, _)| array).collect();
         for array in expected {
             let to = self.arrays.state_mut(array).unwrap_or(&mut []);
             to.copy_from_slice(&find_column::<S>(columns, array.label(), to.len())?);
         }
         if self.keeps_cells() {
-            self.take_up_cells(columns)?;
+            self.restore_cells(columns)?;
         }
-        self.elapsed.crossings.take_up(columns)?;
+        self.elapsed.crossings.restore_counts(columns)?;
         if let Some(rival) = &mut self.rival {
             let discs = self.start.len();
             let of = |axis: usize| find_column(columns, MADE_AT[axis], discs);
@@ -57,13 +57,13 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             if counts.iter().any(|&count| count.fract() != 0.0 || !(0.0..=2f64.powi(53)).contains(&count)) {
                 return Err(format!("the column {LIST_COUNTS} holds a number that is not a count"));
             }
-            rival.take_up(&self.model, made_at, counts[0] as u64, counts[1] as u64);
+            rival.restore_lists(&self.model, made_at, counts[0] as u64, counts[1] as u64);
         }
         Ok(())
     }
 
     /// Restores the cells of discs; if the run so far did not need them, they follow from the positions.
-    fn take_up_cells(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
+    fn restore_cells(&mut self, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         let label = Array::DiscCell.label();
         let is_kept = columns.iter().any(|(name, _)| name == label);
         if !is_kept && !self.model.is_anchored::<S>() && self.model.counts_crossings_for_motion_alone() {

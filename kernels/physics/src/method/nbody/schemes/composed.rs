@@ -1,6 +1,6 @@
 //! Leapfrog, and its compositions of higher order (Yoshida 1990). All are symplectic and reversible.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, resize_columns};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -60,7 +60,7 @@ impl BodyIntegrator for ComposedLeapfrog {
         dt: f64,
         field: &mut dyn AccelerationField,
     ) -> Result<(), ProgramError> {
-        room(&mut self.acceleration, bodies);
+        resize_columns(&mut self.acceleration, bodies);
         let PointMasses { position, velocity, .. } = bodies;
         if !self.is_known {
             field.acceleration(position, &mut self.acceleration)?;
@@ -84,7 +84,7 @@ impl BodyIntegrator for ComposedLeapfrog {
         self.order
     }
 
-    fn carried(&self) -> Vec<&StateColumns> {
+    fn carried_columns(&self) -> Vec<&StateColumns> {
         // Recalculating it would give the same bits, but needs another sweep.
         if self.is_known { vec![&self.acceleration] } else { vec![] }
     }

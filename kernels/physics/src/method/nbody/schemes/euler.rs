@@ -1,6 +1,6 @@
 //! First-order schemes: PWP's damped Euler and the explicit Euler.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, resize_columns};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -29,7 +29,7 @@ impl BodyIntegrator for DampedEuler {
         dt: f64,
         field: &mut dyn AccelerationField,
     ) -> Result<(), ProgramError> {
-        room(&mut self.acceleration, bodies);
+        resize_columns(&mut self.acceleration, bodies);
         field.acceleration(&bodies.position, &mut self.acceleration)?;
         add(&mut bodies.velocity, dt, &self.acceleration);
         bodies.velocity.iter_mut().flatten().for_each(|v| *v *= self.damping);
@@ -44,7 +44,7 @@ impl BodyIntegrator for DampedEuler {
 
     fn take_up(&mut self, _: &PointMasses, _: Vec<StateColumns>) {}
 
-    fn drains(&self) -> bool {
+    fn is_dissipative(&self) -> bool {
         self.damping < 1.0
     }
 }
@@ -70,7 +70,7 @@ impl BodyIntegrator for Euler {
         dt: f64,
         field: &mut dyn AccelerationField,
     ) -> Result<(), ProgramError> {
-        room(&mut self.acceleration, bodies);
+        resize_columns(&mut self.acceleration, bodies);
         field.acceleration(&bodies.position, &mut self.acceleration)?;
         let PointMasses { position, velocity, .. } = bodies;
         add(position, dt, velocity);

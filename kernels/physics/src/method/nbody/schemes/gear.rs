@@ -1,6 +1,6 @@
 //! Gear's six-value predictor and corrector for second-order equations.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, resize_columns};
 use crate::method::nbody::bodies::{add, zeros};
 use stripmine_kernels::isa::ProgramError;
 
@@ -45,7 +45,7 @@ impl BodyIntegrator for SixValueGear {
         dt: f64,
         field: &mut dyn AccelerationField,
     ) -> Result<(), ProgramError> {
-        room(&mut self.acceleration, bodies);
+        resize_columns(&mut self.acceleration, bodies);
         if !self.is_known {
             self.start(bodies, dt, field)?;
             self.is_known = true;
@@ -82,7 +82,7 @@ impl BodyIntegrator for SixValueGear {
         5
     }
 
-    fn carried(&self) -> Vec<&StateColumns> {
+    fn carried_columns(&self) -> Vec<&StateColumns> {
         self.higher.iter().collect()
     }
 

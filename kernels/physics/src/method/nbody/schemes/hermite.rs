@@ -1,6 +1,6 @@
 //! Fourth-order Hermite scheme with jerk: predict, evaluate, correct (Makino and Aarseth 1992).
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, resize_columns};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -23,7 +23,7 @@ impl BodyIntegrator for Hermite {
         dt: f64,
         field: &mut dyn AccelerationField,
     ) -> Result<(), ProgramError> {
-        self.begin.iter_mut().chain(&mut self.end).for_each(|columns| room(columns, bodies));
+        self.begin.iter_mut().chain(&mut self.end).for_each(|columns| resize_columns(columns, bodies));
         if !self.is_known {
             field.derivatives(&bodies.position, &bodies.velocity, &mut self.begin)?;
             self.is_known = true;
@@ -56,7 +56,7 @@ impl BodyIntegrator for Hermite {
         4
     }
 
-    fn carried(&self) -> Vec<&StateColumns> {
+    fn carried_columns(&self) -> Vec<&StateColumns> {
         if self.is_known { self.begin.iter().collect() } else { vec![] }
     }
 

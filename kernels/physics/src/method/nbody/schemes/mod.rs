@@ -65,7 +65,7 @@ pub trait BodyIntegrator: Send {
     fn order(&self) -> u32;
 
     /// Values carried between steps that cannot be calculated from positions and velocities.
-    fn carried(&self) -> Vec<&StateColumns> {
+    fn carried_columns(&self) -> Vec<&StateColumns> {
         vec![]
     }
 
@@ -78,7 +78,7 @@ pub trait BodyIntegrator: Send {
     fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>);
 
     /// True if the scheme dissipates energy on purpose.
-    fn drains(&self) -> bool {
+    fn is_dissipative(&self) -> bool {
         false
     }
 }
@@ -129,7 +129,7 @@ impl SchemeName {
 
 impl SchemeName {
     /// Numbers of three-axis quantities per body that a scheme stores, and that it carries between steps.
-    pub fn held(self) -> [usize; 2] {
+    pub fn stored_quantities(self) -> [usize; 2] {
         match self {
             SchemeName::DampedEuler | SchemeName::Euler | SchemeName::EulerWithHalf => [1, 0],
             SchemeName::Leapfrog | SchemeName::Yoshida4 | SchemeName::Yoshida6 | SchemeName::Yoshida8 => {
@@ -144,7 +144,7 @@ impl SchemeName {
 }
 
 /// Resizes columns to the entries of `bodies`.
-fn room(columns: &mut StateColumns, bodies: &PointMasses) {
+fn resize_columns(columns: &mut StateColumns, bodies: &PointMasses) {
     for column in columns {
         column.resize(bodies.entries(), 0.0);
     }
@@ -152,6 +152,6 @@ fn room(columns: &mut StateColumns, bodies: &PointMasses) {
 
 /// Extends columns by the padding of the bodies.
 fn padded(mut columns: StateColumns, bodies: &PointMasses) -> StateColumns {
-    room(&mut columns, bodies);
+    resize_columns(&mut columns, bodies);
     columns
 }

@@ -1,6 +1,6 @@
 //! Classical fourth-order Runge–Kutta scheme. Its energy drifts.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, room};
+use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, resize_columns};
 use crate::method::nbody::bodies::add;
 use stripmine_kernels::isa::ProgramError;
 
@@ -19,7 +19,7 @@ impl BodyIntegrator for RungeKutta {
         dt: f64,
         field: &mut dyn AccelerationField,
     ) -> Result<(), ProgramError> {
-        self.stages.iter_mut().for_each(|stage| room(stage, bodies));
+        self.stages.iter_mut().for_each(|stage| resize_columns(stage, bodies));
         let PointMasses { position, velocity, .. } = bodies;
         // Stage velocities are v + c dt a of the previous stage, so positions use a of the stage before that.
         for stage in 0..4 {

@@ -12,11 +12,11 @@ use stripmine_kernels::backend::Precision;
 
 impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     /// Takes the discs that this rank owns or needs near its bands, given the rows of all discs of the scene.
-    pub(super) fn take_part(&mut self, rows: &[u32]) {
+    pub(super) fn take_share(&mut self, rows: &[u32]) {
         let grains = self.engine.start.grain_count();
         let mut weights = vec![0; self.layout_bands()];
         rows[..grains].iter().for_each(|&row| weights[self.layout.band(row as usize)] += 1);
-        self.deal_out(&weights);
+        self.distribute_bands(&weights);
         let rank = self.ranks.rank();
         let of = |numbers: std::ops::Range<usize>, is_wanted: &dyn Fn(usize) -> bool| -> Vec<u32> {
             numbers.filter(|&number| is_wanted(rows[number] as usize)).map(|number| number as u32).collect()
@@ -25,7 +25,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         let near = of(0..grains, &|row| self.layout.side(rank, row).is_some());
         let walls = of(grains..rows.len(), &|_| true);
         let row_of = |number: u32| rows[number as usize] as usize;
-        self.hold(own, near, walls, row_of);
+        self.replace_discs(own, near, walls, row_of);
     }
 
     fn layout_bands(&self) -> usize {
@@ -33,13 +33,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     }
 
     /// Distributes bands by their weights.
-    fn deal_out(&mut self, weights: &[u64]) {
+    fn distribute_bands(&mut self, weights: &[u64]) {
         let (rows, periodic) = (self.engine.search.rows(), self.engine.search.cells().grid().periodic[1]);
         self.layout = BandLayout::new(rows, periodic, weights, self.ranks.count());
     }
 
     /// Replaces the discs by those of this rank, nearby ones of other ranks, and walls, none in its cell yet.
-    fn hold(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
+    fn replace_discs(&mut self, own: Vec<u32>, near: Vec<u32>, walls: Vec<u32>, row: impl Fn(u32) -> usize) {
         let (rank, [below, above]) = (self.ranks.rank(), self.ranks.neighbours());
         let on_side = |discs: &[u32], rank: usize, side: RankSide| -> Vec<u32> {
             discs.iter().copied().filter(|&disc| self.layout.side(rank, row(disc)) == Some(side)).collect()
@@ -51,7 +51,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         let (moving, grains) = (own.len(), own.len() + near.len());
         let numbers: Vec<u32> = own.into_iter().chain(near).chain(walls).collect();
         let search = self.engine.search.emptied(numbers.len(), self.layout.share(rank));
-        self.engine.hold(Members { numbers, moving, grains }, search);
+        self.engine.replace_members(Members { numbers, moving, grains }, search);
     }
 
     /// Redistributes the discs: each goes to the rank of its current row.
@@ -65,8 +65,8 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             sums.iter_mut().zip(of_rank).for_each(|(sum, of_rank)| *sum += of_rank);
             sums
         });
-        let weights = self.ranks.tell_message(sums)?;
-        self.deal_out(&weights);
+        let weights = self.ranks.broadcast_message(sums)?;
+        self.distribute_bands(&weights);
         let state = &self.engine.state;
         let row = |disc: usize| self.engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
         let parcels = (0..self.ranks.count()).map(|rank| {
@@ -81,11 +81,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             Parcel::of(&(discs, Parcel::of_numbers(columns.iter().flat_map(|(_, column)| entries(column)))))
         });
         let came = self.ranks.migrate(parcels.collect())?;
-        self.take_over(&came)
+        self.receive_discs(&came)
     }
 
     /// Takes over the discs received from every rank.
-    fn take_over(&mut self, came: &[Parcel]) -> Result<Result<(), String>, RankError> {
+    fn receive_discs(&mut self, came: &[Parcel]) -> Result<Result<(), String>, RankError> {
         let template = self.engine.columns_of(&[]);
         let mut discs: Vec<(bool, u32, Vec<f64>)> = vec![];
         for (rank, parcel) in came.iter().enumerate() {
@@ -99,11 +99,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
                 entries.for_each(|(disc, number)| disc.2.push(number));
             }
         }
-        Ok(self.hold_again(discs, &template))
+        Ok(self.install_received(discs, &template))
     }
 
     /// Replaces the discs, some of them only nearby, with the entries of each in the columns of a template.
-    fn hold_again(
+    fn install_received(
         &mut self,
         mut discs: Vec<(bool, u32, Vec<f64>)>,
         template: &NamedColumns,
@@ -129,13 +129,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         let of = |near: bool| discs.iter().filter(move |disc| disc.0 == near).map(|disc| disc.1).collect();
         let (own, near): (Vec<u32>, Vec<u32>) = (of(false), of(true));
         let made = self.engine.search.lists().map(|lists| lists.made());
-        self.hold(own, near, walls, |number| rows.get(&number).copied().unwrap_or_default());
+        self.replace_discs(own, near, walls, |number| rows.get(&number).copied().unwrap_or_default());
         let length = self.engine.state.len();
-        self.engine.take_up_discs(&columns, (0..length as u32).collect(), length)?;
+        self.engine.restore_discs(&columns, (0..length as u32).collect(), length)?;
         made.into_iter().for_each(|made| self.engine.search.set_lists_made(made));
         // Migration happens between a step and its forces.
         self.engine.awaits_forces = true;
-        self.look_up();
+        self.index_exchanged_discs();
         Ok(())
     }
 
@@ -149,9 +149,9 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         if rows.len() != self.engine.start.len() {
             return Err("the rows of the discs are missing".to_owned());
         }
-        self.take_part(&rows);
-        self.engine.take_up(steps, columns)?;
-        self.look_up();
+        self.take_share(&rows);
+        self.engine.restore_state(steps, columns)?;
+        self.index_exchanged_discs();
         Ok(())
     }
 }

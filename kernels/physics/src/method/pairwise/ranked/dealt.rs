@@ -1,13 +1,13 @@
 //! Distribution of a scene to ranks at the start.
 
 use super::first::{FirstRank, RankThreads};
-use super::orders::serve;
+use super::orders::execute_orders;
 use super::wire::RankOrder;
 use super::worker::{PartStart, RankWorker, all_rows};
 use crate::method::pairwise::search::PairSearch;
 use crate::method::pairwise::state::Members;
 use crate::method::pairwise::{CompiledDynamics, Crossings, Elapsed, PairEngine, PairSystem};
-use crate::method::{Clock, DISMISSED, FailureKind, PhysicsFailure, ended};
+use crate::method::{Clock, DISMISSED, FailureKind, PhysicsFailure, rank_loss_failure};
 use crate::particles::Particles;
 use crate::ranks::{RankError, Ranks, local};
 use std::collections::HashSet;
@@ -28,7 +28,7 @@ pub(super) struct RankedScene<S, P, Q> {
 }
 
 impl<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static> RankedScene<S, P, Q> {
-    pub(super) fn refuse_too_many(&self, count: usize) -> Result<(), PhysicsFailure> {
+    pub(super) fn reject_too_many_ranks(&self, count: usize) -> Result<(), PhysicsFailure> {
         let bands = self.search.rows().bands().len();
         if count <= bands {
             return Ok(());
@@ -75,19 +75,19 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static> RankedScene<S, P
     }
 
     /// Serves simulations on a process other than the first, one after the other, until the first ends it.
-    pub(super) fn serve(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> PhysicsFailure {
+    pub(super) fn serve_process(&self, join: fn() -> Box<dyn Ranks>, particles: Particles) -> PhysicsFailure {
         loop {
-            let ids: HashSet<u32> = match join().tell_message::<Option<Vec<u32>>>(None) {
+            let ids: HashSet<u32> = match join().broadcast_message::<Option<Vec<u32>>>(None) {
                 Ok(Some(ids)) => ids.into_iter().collect(),
                 Ok(None) => return PhysicsFailure::new(DISMISSED, "this rank is dismissed", ""),
-                Err(lost) => return ended(lost, Clock::default()),
+                Err(lost) => return rank_loss_failure(lost, Clock::default()),
             };
             let there = particles.all().iter().filter(|particle| ids.contains(&particle.id));
             let start = Particles::new(there.copied().collect());
             match serve_one(self.part(join(), Arc::new(start))) {
                 // The first rank reports the reason.
                 Ok(()) | Err(RankError::Ended(0)) => {}
-                Err(lost) => return ended(lost, Clock::default()),
+                Err(lost) => return rank_loss_failure(lost, Clock::default()),
             }
         }
     }
@@ -101,12 +101,12 @@ fn serve_one(part: PartStart) -> Result<(), RankError> {
     match part {
         Ok(part) => {
             part.ranks().gather_messages(None::<PhysicsFailure>)?;
-            serve(part)
+            execute_orders(part)
         }
         Err((ranks, failure)) => {
             ranks.gather_messages(Some(failure))?;
             // Wait for the end announced by the first rank.
-            ranks.tell_message::<Option<RankOrder>>(None).map(drop)
+            ranks.broadcast_message::<Option<RankOrder>>(None).map(drop)
         }
     }
 }

@@ -1,14 +1,15 @@
 //! First rank: the simulation that all other code uses.
 
 use super::wire::{
-    CrossedPeriods, DiscRecord, Do, ForcesReport, RankOrder, RankSample, StepReport, column_like, put_own,
+    CrossedPeriods, DiscRecord, Do, ForcesReport, RankOrder, RankSample, StepReport, column_like,
+    store_rank_values,
 };
 use super::worker::{PartStart, RankPart};
 use crate::domain::Domain;
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::observing::{StepEndDisc, contact_sums, sums_of_grains};
 use crate::method::pairwise::{Elapsed, GravityWork, NameableDiscs, RemovableDiscs, SteppingDiscs, wrapped};
-use crate::method::{Clock, FailureKind, PerParticle, PhysicsFailure, ended};
+use crate::method::{Clock, FailureKind, PerParticle, PhysicsFailure, rank_loss_failure};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::{GrainStates, Particles, in_space};
 use crate::ranks::{Parcel, RankError, Ranks};
@@ -58,7 +59,7 @@ impl FirstRank {
                 #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
                 let _ = ranks.gather_messages(None::<PhysicsFailure>);
                 #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
-                let _ = ranks.tell_message(Some(None::<RankOrder>));
+                let _ = ranks.broadcast_message(Some(None::<RankOrder>));
                 return Err(failure);
             }
         };
@@ -73,7 +74,7 @@ impl FirstRank {
             stopped: OnceCell::new(),
         };
         let begun = ranked.worker.ranks().gather_messages(None::<PhysicsFailure>);
-        let begun = begun.map_err(|lost| ranked.lose(lost))?;
+        let begun = begun.map_err(|lost| ranked.record_loss(lost))?;
         first_of(begun).map(|()| ranked)
     }
 }
@@ -83,8 +84,8 @@ impl FirstRank {
         self.worker.engine()
     }
 
-    fn tell(&self, order: &RankOrder) -> Result<(), RankError> {
-        self.worker.ranks().tell(Some(Parcel::of(&Some(order)))).map(drop)
+    fn broadcast_order(&self, order: &RankOrder) -> Result<(), RankError> {
+        self.worker.ranks().broadcast(Some(Parcel::of(&Some(order)))).map(drop)
     }
 
     /// Makes all ranks execute an order that changes something; returns their answers.
@@ -92,16 +93,20 @@ impl FirstRank {
         self.check_ranks()?;
         let crossed = std::mem::take(&mut self.crossed);
         let order = RankOrder { crossed, is_to_migrate: std::mem::take(&mut self.is_to_migrate), what };
-        let answered = self.tell(&order).and_then(|()| self.worker.follow(order));
+        let answered = self.broadcast_order(&order).and_then(|()| self.worker.execute_order(order));
         let answers = answered.and_then(|own| self.worker.ranks().gather(own));
-        answers.and_then(|all| opened(&all)).map_err(|lost| self.lose(lost))
+        answers.and_then(|all| opened(&all)).map_err(|lost| self.record_loss(lost))
     }
 
     /// Makes all ranks sample something; `found` combines their answers. Returns the default if a rank is lost.
-    fn look<R: Default>(&self, what: RankSample, found: impl FnOnce(&[Parcel]) -> Result<R, RankError>) -> R {
+    fn sample_all<R: Default>(
+        &self,
+        what: RankSample,
+        found: impl FnOnce(&[Parcel]) -> Result<R, RankError>,
+    ) -> R {
         let look = || {
-            self.tell(&Do::Look(what).into())?;
-            found(&self.worker.ranks().gather(self.worker.look(what)?)?)
+            self.broadcast_order(&Do::Look(what).into())?;
+            found(&self.worker.ranks().gather(self.worker.take_sample(what)?)?)
         };
         if self.stopped.get().is_some() {
             return R::default();
@@ -109,29 +114,29 @@ impl FirstRank {
         match look() {
             Ok(found) => found,
             Err(lost) => {
-                self.lose(lost);
+                self.record_loss(lost);
                 R::default()
             }
         }
     }
 
     /// Stores the first loss of a rank as a failure; all others then end, whatever message they wait for.
-    fn lose(&self, lost: RankError) -> PhysicsFailure {
-        self.stop(&Parcel::lost(RankError::Ended(0)), || ended(lost, self.clock()))
+    fn record_loss(&self, lost: RankError) -> PhysicsFailure {
+        self.stop(&Parcel::lost(RankError::Ended(0)), || rank_loss_failure(lost, self.clock()))
     }
 
     /// Makes the other ranks end for a reason; returns the first reason.
     fn stop(&self, told: &Parcel, why: impl FnOnce() -> PhysicsFailure) -> PhysicsFailure {
         let stop = || {
             #[expect(clippy::let_underscore_must_use, reason = "a rank that has ended needs no message")]
-            let _ = self.worker.ranks().tell(Some(told.clone()));
+            let _ = self.worker.ranks().broadcast(Some(told.clone()));
             why()
         };
         self.stopped.get_or_init(stop).clone()
     }
 
     /// Combines the reports of a step; returns the discs that moved far.
-    fn heard(&mut self, reports: Vec<StepReport>) -> Result<Vec<u32>, PhysicsFailure> {
+    fn combine_reports(&mut self, reports: Vec<StepReport>) -> Result<Vec<u32>, PhysicsFailure> {
         let (mut failures, mut far) = (vec![], vec![]);
         self.shared_cells = 0;
         for (rank, report) in reports.into_iter().enumerate() {
@@ -168,10 +173,10 @@ impl FirstRank {
         let none = || vec![[f64::NAN; N]; self.engine().start().len()];
         let found = |answers: &[Parcel]| {
             let mut all = none();
-            answers.iter().enumerate().try_for_each(|(rank, own)| put_own(own, rank, &mut all))?;
+            answers.iter().enumerate().try_for_each(|(rank, own)| store_rank_values(own, rank, &mut all))?;
             Ok(Some(all))
         };
-        self.look(what, found).unwrap_or_else(none)
+        self.sample_all(what, found).unwrap_or_else(none)
     }
 
     /// Position, angle and their rates of each of the scene's discs at the end of the step.
@@ -252,7 +257,7 @@ impl PerParticle for FirstRank {
     fn states(&self, states: &mut GrainStates) {
         let domain = self.engine().domain();
         for (number, [x, y, _, vx, vy, _]) in self.standing().into_iter().enumerate() {
-            states.put(number, domain.wrapped([x, y]), [vx, vy]);
+            states.store_state(number, domain.wrapped([x, y]), [vx, vy]);
         }
     }
 
@@ -275,7 +280,7 @@ impl PerParticle for FirstRank {
 impl SteppingDiscs for FirstRank {
     fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
         let reports = self.order(Do::Advance)?;
-        self.heard(reports)
+        self.combine_reports(reports)
     }
 
     fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
@@ -289,7 +294,7 @@ impl SteppingDiscs for FirstRank {
         }
         first_of(failures)?;
         let deep = self.name(deep.concat()).chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        Ok(SweepReport { deep, ..SweepReport::of(of_bands) })
+        Ok(SweepReport { deep, ..SweepReport::from_bands(of_bands) })
     }
 
     fn end(&mut self) {
@@ -316,7 +321,7 @@ impl SteppingDiscs for FirstRank {
 
     fn lists(&self) -> Option<(usize, u64)> {
         let (_, made) = self.engine().lists()?;
-        let listed: Vec<usize> = self.look(RankSample::Listed, opened);
+        let listed: Vec<usize> = self.sample_all(RankSample::Listed, opened);
         Some((listed.into_iter().sum(), made))
     }
 
@@ -358,7 +363,7 @@ impl SteppingDiscs for FirstRank {
     fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         self.is_to_migrate = false;
         let answers = self.order::<Result<(), String>>(Do::Restore { steps, columns: columns.to_vec() });
-        answers.map_err(|failure| failure.what())?.into_iter().collect()
+        answers.map_err(|failure| failure.what_and_when())?.into_iter().collect()
     }
 
     fn sums(&self, scenery: &SceneProperties, work: &GravityWork<'_>) -> ObservationSums {
@@ -367,7 +372,9 @@ impl SteppingDiscs for FirstRank {
             let [x, y, _, vx, vy, omega] = standing[number];
             StepEndDisc { position: [x, y], velocity: [vx, vy], omega }
         });
-        let met = SweepReport::of(self.look(RankSample::Contacts, opened::<Vec<BandReport>>).concat());
+        let met = SweepReport::from_bands(
+            self.sample_all(RankSample::Contacts, opened::<Vec<BandReport>>).concat(),
+        );
         ObservationSums { grains, contacts: contact_sums(&met) }
     }
 }
@@ -383,7 +390,7 @@ impl RemovableDiscs for FirstRank {
     }
 
     fn unfit(&self) -> Vec<usize> {
-        let mut unfit = self.look(RankSample::Unfit, opened::<Vec<usize>>).concat();
+        let mut unfit = self.sample_all(RankSample::Unfit, opened::<Vec<usize>>).concat();
         unfit.sort_unstable();
         unfit
     }
@@ -391,7 +398,7 @@ impl RemovableDiscs for FirstRank {
     fn settle(&mut self) -> Result<(), PhysicsFailure> {
         let reports = self.order(Do::Settle)?;
         self.is_to_migrate = true;
-        self.heard(reports).map(drop)
+        self.combine_reports(reports).map(drop)
     }
 }
 

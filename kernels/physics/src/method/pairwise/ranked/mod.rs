@@ -21,7 +21,7 @@ mod worker;
 
 use super::search::PairSearch;
 use super::{CompiledDynamics, Dynamics, PairEngine, PairSystem, RemovableDiscs};
-use crate::method::{Clock, PhysicsFailure, ended};
+use crate::method::{Clock, PhysicsFailure, rank_loss_failure};
 use crate::particles::Particles;
 use crate::ranks::{self, RankBackend};
 use dealt::RankedScene;
@@ -46,19 +46,19 @@ where
     D: Dynamics + 'static,
 {
     let dynamics: Arc<dyn CompiledDynamics<S, P, Q>> = Arc::new(dynamics);
-    let crew = ranks::crew();
+    let crew = ranks::current_backend();
     if crew.count() == 1 {
         return Ok(Box::new(PairEngine::new(dynamics, system, search, set, particles)?));
     }
     let scene = RankedScene { dynamics, system, set, search };
-    scene.refuse_too_many(crew.count())?;
+    scene.reject_too_many_ranks(crew.count())?;
     let stepping: Box<dyn RemovableDiscs> = match crew {
-        RankBackend::Processes(join) if join().rank() > 0 => return Err(scene.serve(join, particles)),
+        RankBackend::Processes(join) if join().rank() > 0 => return Err(scene.serve_process(join, particles)),
         RankBackend::Processes(join) => {
             let ranks = join();
             let ids: Vec<u32> = particles.all().iter().map(|particle| particle.id).collect();
-            let told = ranks.tell_message(Some(Some(ids)));
-            told.map_err(|lost| ended(lost, Clock::default()))?;
+            let told = ranks.broadcast_message(Some(Some(ids)));
+            told.map_err(|lost| rank_loss_failure(lost, Clock::default()))?;
             Box::new(FirstRank::of(ranks, RankThreads(vec![]), |ranks| {
                 scene.part(ranks, Arc::new(particles))
             })?)

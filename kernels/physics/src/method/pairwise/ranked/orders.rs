@@ -11,10 +11,10 @@ use stripmine_kernels::backend::Precision;
 ///
 /// # Errors
 /// [`RankError`]: a rank was lost, which is reported to the first rank, or the first rank has ended.
-pub(super) fn serve(mut part: Box<dyn RankPart>) -> Result<(), RankError> {
+pub(super) fn execute_orders(mut part: Box<dyn RankPart>) -> Result<(), RankError> {
     loop {
-        let order = part.ranks().tell_message::<Option<RankOrder>>(None);
-        match order.and_then(|order| order.map(|order| part.follow(order)).transpose()) {
+        let order = part.ranks().broadcast_message::<Option<RankOrder>>(None);
+        match order.and_then(|order| order.map(|order| part.execute_order(order)).transpose()) {
             Ok(None) => return Ok(()),
             Ok(Some(own)) => part.ranks().gather(own)?,
             Err(lost) => {
@@ -50,9 +50,9 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankPart for RankWorker<S,
         [self.engine.columns_of(&[]), self.engine.columns_of_all().collect()]
     }
 
-    fn follow(&mut self, order: RankOrder) -> Result<Parcel, RankError> {
+    fn execute_order(&mut self, order: RankOrder) -> Result<Parcel, RankError> {
         let RankOrder { crossed, is_to_migrate, what } = order;
-        self.hear_of_crossings(&crossed);
+        self.add_reported_crossings(&crossed);
         let distributed = if is_to_migrate { self.migrate()? } else { Ok(()) };
         Ok(match what {
             Do::Advance => Parcel::of(&self.advance()?),
@@ -61,13 +61,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankPart for RankWorker<S,
                 self.engine.awaits_forces = false;
                 Parcel::of(&distributed)
             }
-            Do::Look(what) => self.look(what)?,
+            Do::Look(what) => self.take_sample(what)?,
             Do::Settle => Parcel::of(&self.settle()),
             Do::Restore { steps, columns } => Parcel::of(&self.restore(steps, &columns)),
         })
     }
 
-    fn look(&self, what: RankSample) -> Result<Parcel, RankError> {
+    fn take_sample(&self, what: RankSample) -> Result<Parcel, RankError> {
         Ok(match what {
             RankSample::Standing => self.standing(),
             RankSample::Column(place) => self.column(place),

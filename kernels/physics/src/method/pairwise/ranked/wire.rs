@@ -96,7 +96,7 @@ pub(super) struct DiscRecord {
 ///
 /// # Errors
 /// [`RankError`] if there are not `N` of each, or a disc does not exist in the scene.
-pub(super) fn put_own<const N: usize>(
+pub(super) fn store_rank_values<const N: usize>(
     parcel: &Parcel,
     rank: usize,
     all: &mut [[f64; N]],
@@ -297,10 +297,10 @@ mod tests {
         let sent = Parcel::of(&(vec![2_u32, 0], Parcel::of_numbers([1.0, 2.0, 3.0, 4.0])));
         let put = |discs: usize| {
             let mut all = vec![[0.0; 2]; discs];
-            put_own(&sent, 6, &mut all).map(|()| all)
+            store_rank_values(&sent, 6, &mut all).map(|()| all)
         };
         assert_eq!(put(3), Ok(vec![[3.0, 4.0], [0.0; 2], [1.0, 2.0]]));
         assert_eq!(put(2), Err(RankError::Unreadable(6)));
-        assert_eq!(put_own(&sent, 6, &mut [[0.0; 3]; 3]), Err(RankError::Unreadable(6)));
+        assert_eq!(store_rank_values(&sent, 6, &mut [[0.0; 3]; 3]), Err(RankError::Unreadable(6)));
     }
 }

@@ -48,10 +48,10 @@ pub(super) trait RankPart: Send {
     fn columns(&self) -> [NamedColumns; 2];
 
     /// Executes an order; returns this rank's answer for the first rank.
-    fn follow(&mut self, order: RankOrder) -> Result<Parcel, RankError>;
+    fn execute_order(&mut self, order: RankOrder) -> Result<Parcel, RankError>;
 
     /// Takes a sample for the first rank.
-    fn look(&self, what: RankSample) -> Result<Parcel, RankError>;
+    fn take_sample(&self, what: RankSample) -> Result<Parcel, RankError>;
 }
 
 /// Part of a rank with an engine of some precisions and search.
@@ -99,18 +99,18 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         };
         let start = worker.engine.start.clone();
         // Its rank reports a disc outside all rows when it places it.
-        let row = |number: usize| worker.engine.row_at(start.all()[number].place()).unwrap_or(0);
+        let row = |number: usize| worker.engine.row_at(start.all()[number].planar_position()).unwrap_or(0);
         let rows: Vec<u32> = (0..start.len()).map(|number| row(number) as u32).collect();
-        worker.take_part(&rows);
-        if let Err(failure) = worker.engine.take_their_places() {
+        worker.take_share(&rows);
+        if let Err(failure) = worker.engine.place_discs() {
             return Err((worker.ranks, failure));
         }
-        worker.look_up();
+        worker.index_exchanged_discs();
         Ok(worker)
     }
 
     /// Finds the indices in memory of the discs that are sent and received.
-    pub(super) fn look_up(&mut self) {
+    pub(super) fn index_exchanged_discs(&mut self) {
         let numbers = self.engine.state.numbers();
         let mut wanted = vec![0_u64; self.engine.start.len().div_ceil(64)];
         let all = || self.to.iter().chain(&self.from).flatten();
@@ -121,48 +121,51 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         let places = |numbers: &Vec<u32>| numbers.iter().map(|number| in_memory[number]).collect();
         self.to_in_memory = self.to.each_ref().map(places);
         self.from_in_memory = self.from.each_ref().map(places);
-        self.inner = inner_of(&self.to_in_memory, self.engine.state.moving());
+        self.inner = longest_inner_range(&self.to_in_memory, self.engine.state.moving());
         self.ordered = self.engine.orders;
     }
 
     /// Makes one step; returns the report for the first rank.
     pub(super) fn advance(&mut self) -> Result<StepReport, RankError> {
-        self.engine.put_in_order_if_due();
-        self.look_up_again();
+        self.engine.sort_if_due();
+        self.reindex_if_sorted();
         let passed = self.pass()?;
         let (kept, far) = match passed {
             Ok(passed) => {
-                self.engine.has_passed();
+                self.engine.finish_advance();
                 let mut timings = self.engine.elapsed.timings;
-                let kept = timings.time(Phase::Index, || self.keep(&passed.left))?;
+                let kept = timings.time(Phase::Index, || self.update_cells_or_lists(&passed.left))?;
                 self.engine.elapsed.timings = timings;
                 (kept, passed.far)
             }
             Err(error) => (Err(error.into()), vec![]),
         };
         // Lists may have been rebuilt.
-        self.look_up_again();
+        self.reindex_if_sorted();
         Ok(self.report(kept, &far))
     }
 
     /// Finds the indices again if the discs were sorted since.
-    fn look_up_again(&mut self) {
+    fn reindex_if_sorted(&mut self) {
         if self.ordered != self.engine.orders {
-            self.look_up();
+            self.index_exchanged_discs();
         }
     }
 
     /// Updates all cells; returns the report for the first rank.
     pub(super) fn settle(&mut self) -> StepReport {
         let moved = self.engine.settle_all();
-        self.look_up_again();
+        self.reindex_if_sorted();
         self.report(moved, &[])
     }
 
     /// Updates cells or lists after a step: all ranks rebuild their lists, or none.
-    fn keep(&mut self, left: &[u32]) -> Result<Result<Vec<CellChange>, PhysicsFailure>, RankError> {
+    fn update_cells_or_lists(
+        &mut self,
+        left: &[u32],
+    ) -> Result<Result<Vec<CellChange>, PhysicsFailure>, RankError> {
         if self.engine.search.lists().is_none() {
-            return Ok(self.engine.keep_in_cells(left));
+            return Ok(self.engine.update_cells(left));
         }
         let stale = self.engine.is_stale(left);
         let own = match stale {
@@ -171,10 +174,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             Err(_) => ListState::Failed,
         };
         let all = self.ranks.gather_messages(own)?;
-        let said = self.ranks.tell_message(all.into_iter().max())?;
+        let said = self.ranks.broadcast_message(all.into_iter().max())?;
         Ok(match stale {
             Err(failure) => Err(failure),
-            Ok(_) if said == ListState::Stale => self.engine.list_again(),
+            Ok(_) if said == ListState::Stale => self.engine.rebuild_lists(),
             Ok(_) => Ok(vec![]),
         })
     }
@@ -196,7 +199,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             far: far.iter().map(|&disc| self.record(disc)).collect(),
             crossed,
             has_strayed,
-            shared_cells: self.engine.search.cells().shared_cells(&|disc| self.is_own(disc)),
+            shared_cells: self.engine.search.cells().shared_cells(&|disc| self.is_reported_here(disc)),
         }
     }
 
@@ -214,7 +217,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     }
 
     /// True if this rank reports a disc: one that it owns, or a wall in its rows.
-    fn is_own(&self, disc: usize) -> bool {
+    fn is_reported_here(&self, disc: usize) -> bool {
         let engine = &self.engine;
         let in_own_rows = || {
             let row = engine.search.cells().cell(disc).map_or(0, |cell| cell[1]);
@@ -224,9 +227,9 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     }
 
     /// Discs that this rank reports.
-    fn own(&self) -> Vec<u32> {
+    fn reported_discs(&self) -> Vec<u32> {
         let discs = 0..self.engine.state.len();
-        discs.filter(|&disc| self.is_own(disc)).map(|disc| disc as u32).collect()
+        discs.filter(|&disc| self.is_reported_here(disc)).map(|disc| disc as u32).collect()
     }
 
     /// Advances the discs by one step, first those that neighbours need: the others advance while these messages are sent.
@@ -259,7 +262,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             }
         }
         self.engine.elapsed.timings.add(Phase::Halo, begun.elapsed().as_secs_f64() - hidden);
-        Ok(between.map(|between| first.and(between).and(last)))
+        Ok(between.map(|between| first.joined_with(between).joined_with(last)))
     }
 
     /// Computes all forces; returns the report for the first rank.
@@ -273,7 +276,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
 
     /// Sends some values of each disc that this rank reports.
     pub(super) fn each_own<const N: usize>(&self, of: impl Fn(usize) -> [f64; N]) -> Parcel {
-        let discs = self.own();
+        let discs = self.reported_discs();
         let numbers = Parcel::of_numbers(discs.iter().flat_map(|&disc| of(disc as usize)));
         Parcel::of(&(self.numbers(&discs), numbers))
     }
@@ -288,14 +291,14 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         self.each_own(|disc| {
             let [[x, y, angle], [u, v, omega]] =
                 [0, 1].map(|k| [0, 1, 2].map(|it: usize| columns[it][k].get(disc).copied().unwrap_or(0.0)));
-            let [x, y] = engine.seen_from_origin(disc, [x, y]);
+            let [x, y] = engine.absolute_position(disc, [x, y]);
             [x, y, angle, u, v, omega]
         })
     }
 
     /// Sends the entries of a column of the state.
     pub(super) fn column(&self, place: usize) -> Parcel {
-        let (discs, source) = (self.own(), self.engine.sources()[place]);
+        let (discs, source) = (self.reported_discs(), self.engine.sources()[place]);
         let entries = entries(&self.engine.column_of(source, &discs));
         Parcel::of(&(self.numbers(&discs), Parcel::of_numbers(entries)))
     }
@@ -307,7 +310,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
 
     /// Discs of this rank that belong to no cell or have a value that is not finite.
     pub(super) fn unfit(&self) -> Vec<usize> {
-        let own: HashSet<u32> = self.numbers(&self.own()).into_iter().collect();
+        let own: HashSet<u32> = self.numbers(&self.reported_discs()).into_iter().collect();
         self.engine.unfit_discs().into_iter().filter(|&number| own.contains(&(number as u32))).collect()
     }
 
@@ -334,7 +337,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     }
 
     /// Adds the periods that discs of other ranks have crossed. The first rank knows them from their reports.
-    pub(super) fn hear_of_crossings(&mut self, crossed: &[(usize, CrossedPeriods)]) {
+    pub(super) fn add_reported_crossings(&mut self, crossed: &[(usize, CrossedPeriods)]) {
         let own = self.ranks.rank();
         for &(rank, (number, periods)) in crossed {
             if own > 0 && rank != own {
@@ -372,7 +375,7 @@ fn put_discs<T: Element>(
 }
 
 /// Longest range in memory of moving discs that contains none to be sent. Discs are sorted by rows, so this is nearly all of them.
-fn inner_of(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
+fn longest_inner_range(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
     let mut told: Vec<usize> = told.iter().flatten().map(|&disc| disc as usize).collect();
     told.sort_unstable();
     let before = [0].into_iter().chain(told.iter().map(|disc| disc + 1));

@@ -62,7 +62,7 @@ impl<S: Precision> SearchCells<S> for LatticeCells {
     }
 
     fn settle(&mut self, disc: usize, place: [f64; 2]) {
-        self.occupancy.settle(disc, place);
+        self.occupancy.update_position(disc, place);
     }
 
     fn arrange(&mut self, state: &MovingDiscs<S>) {
@@ -135,10 +135,10 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for LatticeSearch<P> {
     type Cells = LatticeCells;
 
     fn emptied(&self, discs: usize, share: RankShare) -> Self {
-        let occupancy = self.cells.occupancy.emptied(discs);
+        let occupancy = self.cells.occupancy.empty_copy(discs);
         let codes = Codes::new(&occupancy, occupancy.grid().frame);
         let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
-        let sweep = Sweep::of_share(rows::<S, P, _>(&lattice), Some(&share));
+        let sweep = Sweep::for_share(rows::<S, P, _>(&lattice), Some(&share));
         let cells = LatticeCells { occupancy, on_conflict: self.cells.on_conflict };
         LatticeSearch { cells, codes, sweep, share: Some(share), smallest: self.smallest }
     }

@@ -47,8 +47,8 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for ListSearch<S, P> {
     type Cells = Sectors;
 
     fn emptied(&self, discs: usize, share: RankShare) -> Self {
-        let sectors = self.sectors.emptied(discs);
-        let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
+        let sectors = self.sectors.empty_copy(discs);
+        let sweep = Sweep::for_share(rows::<S, P, _>(&sectors), Some(&share));
         let ListedPairs { skin, made, .. } = self.listed;
         let listed = ListedPairs { list: None, skin, made_at: Default::default(), made };
         ListSearch { sectors, sweep, share: Some(share), listed }
@@ -130,7 +130,7 @@ impl<S: Precision> ListedPairs<S> {
 
     /// Number of listed pairs in some rows of sectors.
     pub(crate) fn entries_of(&self, rows: std::ops::Range<usize>) -> usize {
-        self.list.as_ref().map_or(0, |list| list.entries_of(rows))
+        self.list.as_ref().map_or(0, |list| list.entries_in_rows(rows))
     }
 
     /// Number of list builds.

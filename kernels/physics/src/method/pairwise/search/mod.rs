@@ -134,7 +134,7 @@ fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
 ) -> Result<SweepReport, ProgramError> {
     let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.place[0].len()]);
     let asked = ObservationRequest { energy: true, ..ObservationRequest::default() };
-    Sweep::of_share(finder.rows(), share).run(
+    Sweep::for_share(finder.rows(), share).run(
         law,
         finder,
         discs,

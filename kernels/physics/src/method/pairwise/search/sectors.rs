@@ -63,8 +63,8 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for SectorSearch<P> {
     type Cells = Sectors;
 
     fn emptied(&self, discs: usize, share: RankShare) -> Self {
-        let sectors = self.sectors.emptied(discs);
-        let sweep = Sweep::of_share(rows::<S, P, _>(&sectors), Some(&share));
+        let sectors = self.sectors.empty_copy(discs);
+        let sweep = Sweep::for_share(rows::<S, P, _>(&sectors), Some(&share));
         SectorSearch { sectors, sweep, share: Some(share) }
     }
 
