@@ -2,7 +2,7 @@
 //!
 //! A block ```` ```console ```` has lines `$ COMMAND`, each followed by its output, or by nothing where the output is not shown. `[..]` stands for any
 //! characters of a line, a line `…` for any number of lines, and a line `? 3` says that the command ends with exit code 3. Blocks of one document share a
-//! folder. Blocks marked `console,slow` are run by the long suite. With `STRIPMINE_BLESS=1` outputs are written anew where they differ.
+//! folder. Blocks marked `console,slow` are run by the long suite. With `STRIPMINE_BLESS=1` outputs that differ are replaced.
 
 #![cfg(unix)]
 
@@ -129,6 +129,7 @@ fn run(document: &Path, is_wanted: impl Fn(&Shown) -> bool) -> (Vec<String>, Str
         let mut command = Command::new("sh");
         command.args(["-c", &format!("{{ {}\n}} 2>&1", it.command)]).current_dir(folder.path());
         command.env("PATH", &path).env("COLUMNS", "80").env("NO_COLOR", "1");
+        command.env("XDG_CACHE_HOME", folder.path().join("cache"));
         let output = Timed::from_std(command).timeout(Duration::from_secs(300)).output().unwrap();
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         let said: Vec<&str> = said.lines().map(str::trim_end).collect();
@@ -177,9 +178,10 @@ fn slow_commands_of_documents_give_the_shown_output() {
 
 /// A command in a block that nothing runs may be wrong without anyone noticing.
 #[test]
-fn commands_stand_in_blocks_that_are_run() {
+fn commands_are_in_blocks_that_are_run() {
     let mut faults = vec![];
-    for document in documents() {
+    // `tests/gallery.rs` runs the commands of the gallery.
+    for document in documents().into_iter().filter(|it| !it.ends_with("docs/gallery.md")) {
         let text = fs::read_to_string(&document).unwrap();
         let run: Vec<usize> = shown(&text).iter().map(|it| it.line).collect();
         for (at, line) in text.lines().enumerate() {
@@ -200,9 +202,15 @@ fn commands_stand_in_blocks_that_are_run() {
     assert!(faults.is_empty(), "{} commands that are not run:\n{}", faults.len(), faults.join("\n"));
 }
 
-/// True if a line is outside all blocks.
-fn is_prose(text: &str, at: usize) -> bool {
-    text.lines().take(at).filter(|line| line.starts_with("```")).count() % 2 == 0
+/// True if a line is in a block whose commands nothing runs.
+fn is_unchecked(text: &str, at: usize) -> bool {
+    let mut block = None;
+    for line in text.lines().take(at) {
+        if let Some(kind) = line.strip_prefix("```") {
+            block = if block.is_none() { Some(kind) } else { None };
+        }
+    }
+    block.is_some_and(|kind| !kind.starts_with("console"))
 }
 
 #[test]

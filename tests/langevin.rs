@@ -351,7 +351,7 @@ fn losses_are_counted_and_listed() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_what_may_be() {
+fn impossible_settings_are_refused_with_alternatives() {
     let folder = tempfile::tempdir().unwrap();
     let cases: [(&str, &[&str], &[&str]); 14] = [
         (

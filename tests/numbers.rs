@@ -124,7 +124,7 @@ fn numbers_in_documents_are_those_of_the_report() {
 
 /// Faults name the line, and what exists.
 #[test]
-fn a_number_whose_cell_is_gone_is_a_fault() {
+fn numbers_without_a_cell_are_faults() {
     let folder = Folder::opened_elsewhere(&root().join("reports"));
     let of = |name: &str, number: &str, definition: &str| {
         let text = format!("a\nb {BEGIN}{name} -->{number}{END}.\n{DEFINITIONS}\n{definition}\n-->\n");

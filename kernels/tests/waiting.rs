@@ -131,7 +131,7 @@ fn stages(parts: usize) {
 }
 
 #[test]
-fn a_stage_begins_when_the_one_before_is_done() {
+fn stages_follow_each_other_under_loom() {
     explored(2, || stages(2));
 }
 

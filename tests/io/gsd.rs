@@ -218,7 +218,7 @@ fn killed_trajectory_has_whole_frames() {
 
 /// Bytes before the mark must still be there: a change in header, names, entries or chunks is refused, and the file is not changed.
 #[test]
-fn what_is_missing_or_changed_before_the_mark_is_refused() {
+fn damage_before_the_mark_is_rejected() {
     let (_folder, path) = folder_and_path();
     let (mut grown, marks) = written(&path, plane, 4);
     let (whole, mark) = (grown.swap_remove(4), marks[4]);

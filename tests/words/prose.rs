@@ -9,7 +9,7 @@ pub fn begins_with(text: &str, words: &str) -> bool {
 
 /// True if a text contains a phrase as whole words, whatever the case and the line ends between them.
 pub fn contains(text: &str, phrase: &str) -> bool {
-    let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '\'');
     let text = text.to_lowercase().split_whitespace().collect::<Vec<_>>().join(" ");
     let phrase = phrase.to_lowercase();
     text.match_indices(&phrase).any(|(at, _)| {

@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_point_and_every_cell_is_in_the_table() {
+    fn tables_have_every_point_and_cell() {
         for figure in samples::all() {
             let table = data(&figure);
             assert_eq!(table.is_some(), data_file(&figure).is_some());

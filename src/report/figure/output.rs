@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_with_too_many_dots_is_an_error() {
+    fn too_many_dots_are_an_error() {
         let mut figure = samples::pipe();
         if let Picture::Drawing(drawing) = &mut figure.picture {
             drawing.width = 49_000.0;

@@ -203,7 +203,7 @@ mod tests {
 
     /// Blocks of a long run are compared with all of its rows.
     #[test]
-    fn blocks_of_a_long_run_are_means_of_its_rows() {
+    fn blocks_are_means_of_their_rows() {
         let mut rows = AveragedRows::new(QUANTITIES);
         let x = |at: u32| 2.0 + f64::from(at * 7919 % 101);
         for at in 0..=10_000 {

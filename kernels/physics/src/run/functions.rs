@@ -82,9 +82,10 @@ pub fn functions_of<'f>(
         let StructureObservable { name, file, .. } = *observable;
         let runs = folders.len();
         let files = folders.iter().map(|folder| table(&folder.join(file), observable));
-        let files: Option<Vec<Table>> = files.collect::<Result<_, _>>()?;
+        let files: Option<Vec<FunctionTable>> = files.collect::<Result<_, _>>()?;
         let Some(files) = files else { return Ok(None) };
-        let files: Result<Vec<Vec<FunctionPoint>>, String> = files.into_iter().map(Table::points).collect();
+        let files: Result<Vec<Vec<FunctionPoint>>, String> =
+            files.into_iter().map(FunctionTable::points).collect();
         let mut points = match files {
             Ok(files) => joined(&files),
             Err(doubt) => {
@@ -175,18 +176,18 @@ fn read(path: &Path, most: u64) -> Result<Option<Vec<u8>>, FinishedError> {
 }
 
 /// Content of a function's file.
-enum Table {
+enum FunctionTable {
     Points(Vec<FunctionPoint>),
     /// Columns that another version of the program has written: the heading.
     OtherColumns(String),
 }
 
-impl Table {
+impl FunctionTable {
     /// The points; a sentence if there are none that this version can read.
     fn points(self) -> Result<Vec<FunctionPoint>, String> {
         match self {
-            Table::Points(points) => Ok(points),
-            Table::OtherColumns(heading) => Err(format!(
+            FunctionTable::Points(points) => Ok(points),
+            FunctionTable::OtherColumns(heading) => Err(format!(
                 "its file has the columns `{}` of another version of the program; run the scene again",
                 quoted::message(&heading)
             )),
@@ -194,8 +195,8 @@ impl Table {
     }
 }
 
-/// Table in a file; `None` if the file does not exist.
-fn table(path: &Path, observable: &StructureObservable) -> Result<Option<Table>, FinishedError> {
+/// FunctionTable in a file; `None` if the file does not exist.
+fn table(path: &Path, observable: &StructureObservable) -> Result<Option<FunctionTable>, FinishedError> {
     let damaged = |line, expected| FinishedError::Damaged { file: path.to_owned(), line, expected };
     let Some(bytes) = read(path, LONGEST)? else { return Ok(None) };
     let text = String::from_utf8(bytes).map_err(|error| {
@@ -214,7 +215,7 @@ fn table(path: &Path, observable: &StructureObservable) -> Result<Option<Table>,
         Some(first) if first == heading(observable) => {}
         // Versions differ in the number of columns; damage rarely leaves a heading whole.
         Some(first) if first.ends_with(",error") && first.split(',').count() != count => {
-            return Ok(Some(Table::OtherColumns(first)));
+            return Ok(Some(FunctionTable::OtherColumns(first)));
         }
         _ => return Err(damaged(1, format!("`{}`", heading(observable)))),
     }
@@ -222,7 +223,7 @@ fn table(path: &Path, observable: &StructureObservable) -> Result<Option<Table>,
         let row = whole(line).and_then(|line| point(&line));
         row.ok_or_else(|| damaged(number, format!("{count} numbers and the end of the line")))
     };
-    lines.map(row).collect::<Result<_, _>>().map(Table::Points).map(Some)
+    lines.map(row).collect::<Result<_, _>>().map(FunctionTable::Points).map(Some)
 }
 
 /// Reads the summary of a run; null if it has not ended.

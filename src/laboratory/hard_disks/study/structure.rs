@@ -279,7 +279,7 @@ mod tests {
 
     /// The density is normalised to 1 and has the mean 1.
     #[test]
-    fn free_times_of_a_dilute_gas_are_a_density() {
+    fn free_times_form_a_density() {
         let times = || (0..2000).map(|at| (f64::from(at) + 0.5) * 0.01);
         let whole: f64 = times().map(|time| 0.01 * dilute_gas_density(time)).sum();
         let mean: f64 = times().map(|time| 0.01 * time * dilute_gas_density(time)).sum();

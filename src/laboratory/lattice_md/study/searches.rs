@@ -18,7 +18,7 @@ use stripmine_physics::words::Words;
 const F64: &str = "f64";
 /// Precisions; the first is measured everywhere.
 const PRECISIONS: [&str; 3] = [F64, "mixed", "f32"];
-/// Searches of today by their names in scenes; the lattice is first.
+/// Optimised searches by their names in scenes; the lattice is first.
 const TODAY: [&str; 3] = ["lattice", "neighbor-list", "sectors"];
 const EAGER: &str = "printed lattice, eager";
 const CHAINED: &str = "lattice, chained";
@@ -28,7 +28,7 @@ const PAPER: [&str; 3] = [EAGER, CHAINED, ALL_PAIRS];
 
 /// Measured cases of a study size.
 struct SearchGrid {
-    /// Discs and decreasing packing fractions for the searches of today.
+    /// Discs and decreasing packing fractions for the optimised searches.
     discs: &'static [usize],
     packing_fractions: &'static [f64],
     /// Number of discs at which all precisions are compared; 0 for none.
@@ -194,13 +194,13 @@ impl SearchRates<'_> {
         self.all.iter().find(|(known, _)| *known == place).map(|(_, measured)| measured)
     }
 
-    /// Discs and increasing packing fractions of the searches of today on one thread in double precision.
+    /// Discs and increasing packing fractions of the optimised searches on one thread in double precision.
     fn grid(&self) -> impl Iterator<Item = (usize, f64)> {
         let fractions = self.grid.packing_fractions;
         self.grid.discs.iter().flat_map(move |&discs| fractions.iter().rev().map(move |&phi| (discs, phi)))
     }
 
-    /// Searches of today for a number of discs and a packing fraction, the fastest first.
+    /// Optimised searches for a number of discs and a packing fraction, the fastest first.
     fn ranked_searches(&self, discs: usize, packing_fraction: f64) -> Vec<(&'static str, &MeasuredCase)> {
         let each = |search| Some((search, self.at(SearchCase::of(search, discs, packing_fraction))?));
         let mut all: Vec<_> = TODAY.into_iter().filter_map(each).collect();
