@@ -101,7 +101,7 @@ pub struct ClaimLimit {
     pub(crate) relative: Option<f64>,
 }
 
-/// Keys of a [`Limit`].
+/// Keys of a [`ClaimLimit`].
 const LIMIT: [&str; 5] = ["since", "expected", "relation", "tolerance", "relative"];
 
 /// Expected value.

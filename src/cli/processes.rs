@@ -74,7 +74,7 @@ impl ProcessSession {
     /// Joins the other processes, if there are any and the verb has work for them.
     ///
     /// # Errors
-    /// [`Failure`] if there are any and this program was built without MPI.
+    /// [`CommandFailure`] if there are any and this program was built without MPI.
     pub(super) fn begin(verb: &str) -> Result<ProcessSession, CommandFailure> {
         let Some(place) = own_process().filter(|_| !ALONE.contains(&verb)) else {
             return Ok(ProcessSession {
@@ -150,7 +150,7 @@ fn first_exchange(ranks: &dyn Ranks, part: ProcessState) -> Result<JointVerdict,
 /// Begins joint work if every process can begin and has the same `same`. Each process calls this before its first message.
 ///
 /// # Errors
-/// [`Failure`] on all processes, naming the rank that cannot begin or does something else.
+/// [`CommandFailure`] on all processes, naming the rank that cannot begin or does something else.
 pub(super) fn begin(ranks: &dyn Ranks, same: &str) -> Result<(), CommandFailure> {
     match first_exchange(ranks, ProcessState::Begins(same.to_owned()))? {
         JointVerdict::Own => Ok(()),
@@ -257,7 +257,7 @@ pub(super) fn serve(crew: RankBackend, start: impl FnOnce() -> Result<(), Broken
 /// Runs joint work on all processes. The first rank runs `first`, which may begin simulations on all of them; the others run `serve`.
 ///
 /// # Errors
-/// [`Failure`] of the rank itself, or of [`begin`] if scenes or programs differ.
+/// [`CommandFailure`] of the rank itself, or of [`begin`] if scenes or programs differ.
 pub(super) fn run_jointly(
     join: fn() -> Box<dyn Ranks>,
     same: &str,

@@ -104,7 +104,7 @@ pub fn is_untouched() -> bool {
 /// Writes data to standard output; control characters in quoted names are escaped.
 ///
 /// # Errors
-/// [`Failure::StandardOutput`] if it cannot be written.
+/// [`CommandFailure::StandardOutput`] if it cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), CommandFailure> {
     write(|| io::stdout().write_all(quoted::escaped_for_terminal(text).as_bytes()))
 }
@@ -117,7 +117,7 @@ pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), CommandFailure> {
 /// Writes data to standard output as one JSON document.
 ///
 /// # Errors
-/// [`Failure::StandardOutput`] if it cannot be written.
+/// [`CommandFailure::StandardOutput`] if it cannot be written.
 pub(crate) fn print_json(data: &impl serde::Serialize) -> Result<(), CommandFailure> {
     print(&(to_json(data)? + "\n"))
 }

@@ -15,7 +15,7 @@ pub struct ResultFrame {
     pub rows: Vec<Vec<FrameValue>>,
 }
 
-/// A column of a [`Frame`].
+/// A column of a [`ResultFrame`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameColumn {
     /// Name for programs: small letters, digits and `_`.
@@ -53,7 +53,7 @@ pub enum Digits {
     Short,
 }
 
-/// Content of a cell of a [`Frame`].
+/// Content of a cell of a [`ResultFrame`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum FrameValue {
     /// Nothing, or no finite number.

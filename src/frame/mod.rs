@@ -1,5 +1,5 @@
 //! Results as tables with typed columns. Data files, tables and charts of a page, and the values of claims are all made from a
-//! [`Frame`].
+//! [`ResultFrame`].
 
 mod columns;
 mod convert;

@@ -91,7 +91,7 @@ impl<T: DeserializeOwned> FileKind<T> {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`InputErrors`]: the file cannot be read, it is not UTF-8, or as for [`Kind::read`].
+    /// [`InputErrors`]: the file cannot be read, it is not UTF-8, or as for [`FileKind::read`].
     pub(super) fn load(&self, path: &Path) -> Result<T, InputErrors> {
         let file = path.display().to_string();
         let nowhere = Spot { file: file.clone(), place: None };

@@ -218,7 +218,7 @@ impl Journal {
     /// Result of one process, broadcast to the others.
     ///
     /// # Errors
-    /// As [`over`](Self::over).
+    /// As [`run_all`](Self::run_all).
     pub(crate) fn run_on_one<R: Send, E: From<JournalError> + Send>(
         &self,
         run: impl Fn() -> Result<R, E> + Sync,

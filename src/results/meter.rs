@@ -73,7 +73,7 @@ impl<'p> ProgressMeter<'p> {
         run_in_parallel(cases, |case| work(case).inspect(|_| self.add(1.0)))
     }
 
-    /// As [`each`](Self::each), but starts with the last case, for cases of increasing cost.
+    /// As [`run_cases`](Self::run_cases), but starts with the last case, for cases of increasing cost.
     ///
     /// # Errors
     /// First error of a case.

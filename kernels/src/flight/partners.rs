@@ -22,7 +22,7 @@ pub struct EarliestCollision {
 }
 
 /// Finds the earliest collision of the disc `own` with its partners and writes the time of every collision to `times`, infinite
-/// where [`meeting`](super::meeting) is. The partners are the first `count` entries of a `row`. The entries behind them may be
+/// where [`collision_time`](super::collision_time) is. The partners are the first `count` entries of a `row`. The entries behind them may be
 /// the number of any disc: the number of partners is random, so a branch would be mispredicted. `known` has the time of each
 /// disc's earliest known event.
 ///

@@ -109,7 +109,7 @@ impl<T: Storage> ArrayColumn<T> {
     /// Pointer to the element that an entry of an index vector numbers, counted from one. For zero the pointer must not be used.
     ///
     /// # Panics
-    /// As [`Column::read`].
+    /// As [`ArrayColumn::read`].
     #[inline(always)]
     pub(crate) fn entry(&self, number: u32) -> *const T {
         let number = number as usize;

@@ -79,7 +79,7 @@ pub trait Env<const DIM: usize>: Copy {
 /// A pair law in `DIM` dimensions.
 ///
 /// It states the quantities it reads and the sums it adds to. A sweep provides these and no more. A law that omits a field or a
-/// sum is rejected ([`check`](super::check)) and cannot reach what it does not state ([`Stated`](super::Stated)). A law that
+/// sum is rejected ([`check`](super::check)) and cannot reach what it does not state ([`StatedEnv`](super::Stated)). A law that
 /// states a quantity its dimensions lack does not compile where it is used:
 ///
 /// ```compile_fail

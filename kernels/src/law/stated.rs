@@ -1,7 +1,7 @@
 //! Enforcement of a law's statements: it can read no other field and add to no other sum.
 //!
 //! A sweep checks the columns that [`Law::FIELDS`] and [`Law::SUMS`] name, and then reads and adds unchecked. So a law reaches a
-//! sweep only through [`Stated`], which panics at anything else. Both lists are constants and so is every field a law names: the
+//! sweep only through [`StatedEnv`], which panics at anything else. Both lists are constants and so is every field a law names: the
 //! compiled check is empty.
 
 use super::environment::{Env, Law};

@@ -212,7 +212,7 @@ mod tests {
         }
     }
 
-    /// For seeds one apart and all uses of the table in [`Purpose`], no two draws have a word pair in common. (64 bits of some
+    /// For seeds one apart and all uses of the table in [`RandomPurpose`], no two draws have a word pair in common. (64 bits of some
     /// 10⁵ draws coincide by chance once in 10⁹ cases.)
     #[test]
     fn purposes_and_seeds_share_no_numbers() {

@@ -33,7 +33,7 @@
 //! | that of its last disc (nothing clears x) | as particle 0 until discs have come and gone | right by luck | as above at the start |
 //! | its own, x(0) + (1 − Test)·far | finite | right | right: nothing is out of range |
 //!
-//! [`Map`] implements the last: three more operations on the lattice, exact, and the only reading that runs unchanged on a CRAY.
+//! [`PrintedMap`] implements the last: three more operations on the lattice, exact, and the only reading that runs unchanged on a CRAY.
 //! `kernels/tests/printed.rs` demonstrates the others.
 
 pub mod beside;

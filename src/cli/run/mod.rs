@@ -154,7 +154,7 @@ impl RunVerb {
 /// Rejects ranks with more than the largest number of threads in total.
 ///
 /// # Errors
-/// [`Failure::ManyThreads`]
+/// [`CommandFailure::ManyThreads`]
 pub(super) fn check_total_threads(ranks: u16, threads: usize) -> Result<(), CommandFailure> {
     match usize::from(ranks) * threads > MOST_THREADS.into() {
         true if ranks > 1 => Err(CommandFailure::ManyThreads { ranks, threads }),

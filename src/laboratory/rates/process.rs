@@ -89,7 +89,7 @@ fn failure_of_child(status: ExitStatus, words: &str) -> ProcessFailure {
 /// Measures the cases read from standard input and prints one line for each.
 ///
 /// # Errors
-/// [`Failure`] of a case, or of standard input that does not contain cases.
+/// [`CommandFailure`] of a case, or of standard input that does not contain cases.
 pub(crate) fn serve(all: &[&StudyWork]) -> Result<(), CommandFailure> {
     let mut line = String::new();
     let read = io::stdin().lock().read_line(&mut line);

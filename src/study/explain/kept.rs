@@ -127,7 +127,7 @@ impl PlanCache {
     /// Returns the cached measurements of trials at least as long, with their origin. Measurements of another host are ignored.
     ///
     /// # Errors
-    /// [`KeptError`] if the file exists and cannot be read, or is damaged.
+    /// [`PlanCacheError`] if the file exists and cannot be read, or is damaged.
     pub(crate) fn recall(
         &self,
         case: &StudyCase,
@@ -154,7 +154,7 @@ impl PlanCache {
     /// Returns the cached measurements of the most similar scene, of any quantity, with their origin; none where no scene is similar.
     ///
     /// # Errors
-    /// [`KeptError`] if the cache cannot be read.
+    /// [`PlanCacheError`] if the cache cannot be read.
     pub(super) fn nearest_findings(
         &self,
         case: &StudyCase,
@@ -177,7 +177,7 @@ impl PlanCache {
     /// Opens the journal of the trials of a scene, which resumes interrupted ones. Without a cache folder nothing is recorded.
     ///
     /// # Errors
-    /// [`KeptError`] if it cannot be read or created.
+    /// [`PlanCacheError`] if it cannot be read or created.
     pub(super) fn journal(
         &self,
         case: &StudyCase,
@@ -194,7 +194,7 @@ impl PlanCache {
     /// Removes the journal once its measurements are cached.
     ///
     /// # Errors
-    /// [`KeptError`] if it cannot be removed.
+    /// [`PlanCacheError`] if it cannot be removed.
     pub(super) fn close(
         &self,
         case: &StudyCase,
@@ -214,7 +214,7 @@ impl PlanCache {
     /// Writes measurements to the cache, with the trial time that was requested and used.
     ///
     /// # Errors
-    /// [`KeptError`] if it cannot be written.
+    /// [`PlanCacheError`] if it cannot be written.
     pub(crate) fn store_findings(
         &self,
         case: &StudyCase,
@@ -250,7 +250,7 @@ impl PlanCache {
     /// Removes all cached files and journals, of every version, and returns their number. Other files in the folder stay.
     ///
     /// # Errors
-    /// [`KeptError`] if one cannot be removed.
+    /// [`PlanCacheError`] if one cannot be removed.
     pub(crate) fn forget(&self) -> Result<usize, PlanCacheError> {
         let files: Vec<PathBuf> = self.files()?.into_iter().filter(|file| is_marked(file)).collect();
         files.iter().try_for_each(|file| remove_if_there(file))?;

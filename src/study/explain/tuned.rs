@@ -18,7 +18,7 @@ pub(crate) struct TunedSettings {
 /// where nothing is cached of it or of a similar scene, or no setting is `auto`. Explicit settings of a scene are never changed.
 ///
 /// # Errors
-/// [`KeptError`] if the cache cannot be read.
+/// [`PlanCacheError`] if the cache cannot be read.
 pub(crate) fn tuned_settings(
     case: &StudyCase,
     kept: &PlanCache,

@@ -13,7 +13,7 @@ const SMALLEST: usize = 3;
 /// Approximate number of runs per boundary, and their cost: each is as long as one with four own steps.
 const EDGE: [f64; 2] = [8.0, 8.0 / 4.0];
 /// Share of the time that is planned: measured, not derived. The rest covers costs unknown in advance: samples of runs, biased means that are
-/// repeated with another seed, boundaries below the scene's own step. Maps of four scenes took 1.7 to 2.6 times the seconds of [`Costs::of_map`], and
+/// repeated with another seed, boundaries below the scene's own step. Maps of four scenes took 1.7 to 2.6 times the seconds of [`MapCosts::of_map`], and
 /// 1/2.6 is 0.38; which scenes these were is not recorded. A test checks the planned time (`planned_maps_fit_their_time`); none checks the actual
 /// time.
 const PLANNED: f64 = 0.38;

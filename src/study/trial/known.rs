@@ -27,7 +27,7 @@ pub(crate) struct MeanEstimate {
     /// Waves of the error bar: its degrees of freedom.
     #[serde(with = "any_number")]
     pub waves: f64,
-    /// Square of the error bar of a mean over one unit of time, with rows spaced by [`every`](Self::every).
+    /// Square of the error bar of a mean over one unit of time, with rows spaced by [`sampling_strides`](Self::sampling_strides).
     #[serde(with = "any_number")]
     pub square: f64,
     /// Time between rows (time); 0 where it does not matter.

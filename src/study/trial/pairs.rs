@@ -104,7 +104,7 @@ impl PairedRun {
 /// in the first windows; where time is left, the last are those of independent runs.
 ///
 /// # Errors
-/// [`Broken`] names the configuration that failed.
+/// [`FailedConfiguration`] names the configuration that failed.
 pub(crate) fn run_pairs(
     trial: &TrialControl<'_>,
     compared: &PairedConfigurations<'_>,

@@ -184,7 +184,7 @@ impl TrialControl<'_> {
     /// Runs a scene and observes a quantity.
     ///
     /// # Errors
-    /// [`Failure`] if it fails.
+    /// [`CommandFailure`] if it fails.
     pub(crate) fn sample(
         &self,
         prepared: &Prepared,
@@ -354,7 +354,7 @@ impl TrialControl<'_> {
     /// Times a scene without rows.
     ///
     /// # Errors
-    /// [`Failure`] if it fails.
+    /// [`CommandFailure`] if it fails.
     pub(crate) fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, PhysicsFailure> {
         const STRETCHES: u32 = 4;
         let mut simulation = prepared.start(StartPurpose::Run)?;

@@ -65,7 +65,7 @@ fn is_collision(subject: &Subject) -> bool {
 /// collision of two discs that separate within its time.
 ///
 /// # Errors
-/// [`StudyError`] as for [`Runs::recall`].
+/// [`StudyError`] as for [`StudyRuns::recall`].
 pub(crate) fn collision(
     runs: &StudyRuns<'_>,
     steps: &[f64],

@@ -36,7 +36,7 @@ impl ParticleEvents {
 /// failure count.
 ///
 /// # Errors
-/// [`StudyError`] as for [`Runs::recall`].
+/// [`StudyError`] as for [`StudyRuns::recall`].
 pub(crate) fn encounters(
     runs: &StudyRuns<'_>,
     step: f64,

@@ -34,7 +34,7 @@ fn is_time(seconds: &f64) -> bool {
 /// Times a step of each configuration, over its first steps.
 ///
 /// # Errors
-/// [`StudyError`] as for [`Runs::recall`].
+/// [`StudyError`] as for [`StudyRuns::recall`].
 pub(crate) fn configurations(
     runs: &StudyRuns<'_>,
     choices: &[SettingChoice],
@@ -173,7 +173,7 @@ impl PlannedDiagram<'_> {
     /// Every run, without its cost.
     ///
     /// # Errors
-    /// [`StudyError`] as for [`Runs::recall`].
+    /// [`StudyError`] as for [`StudyRuns::recall`].
     pub(super) fn all(
         &self,
         reference: &DiagramReference,
@@ -233,7 +233,7 @@ impl PlannedDiagram<'_> {
     /// is time, as short runs are easily disturbed. `begun` is the start of the study on its watch (s).
     ///
     /// # Errors
-    /// [`StudyError`] as for [`Runs::recall`].
+    /// [`StudyError`] as for [`StudyRuns::recall`].
     pub(super) fn time(&self, runs: &mut [DiagramRun], begun: f64) -> Result<(), StudyError> {
         let watch = self.runs.trial.watch;
         let repeats = if self.runs.journal.is_first() { MORE * self.effort.repeats } else { 0 };

@@ -21,7 +21,7 @@ pub(crate) enum UnfitFile {
 /// Opens an ordinary file for reading.
 ///
 /// # Errors
-/// The system's error, or [`Unfit`] inside an error of kind `InvalidInput`.
+/// The system's error, or [`UnfitFile`] inside an error of kind `InvalidInput`.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
     // Opening a pipe would wait for its writer, so the kind is checked before.
     match kind(fs::metadata(path)?.file_type()) {

@@ -289,7 +289,7 @@ impl Prepared {
     /// Starts a simulation.
     ///
     /// # Errors
-    /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
+    /// [`PhysicsFailure`] if the start violates a precondition, or the processor lacks the requested instruction set.
     pub fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         self.model.start(purpose)
     }
@@ -334,7 +334,7 @@ pub trait Startable: Send + Sync {
     /// Starts a simulation.
     ///
     /// # Errors
-    /// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
+    /// [`PhysicsFailure`] if the start violates a precondition, or the processor lacks the requested instruction set.
     fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure>;
 
     /// Returns this scene started from other positions and velocities of the same particles in the same order.

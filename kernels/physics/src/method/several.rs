@@ -13,7 +13,7 @@ pub const DISMISSED: FailureKind = FailureKind::new("dismissed");
 /// Rejects several ranks for a reason.
 ///
 /// # Errors
-/// [`Failure`] if there are several.
+/// [`PhysicsFailure`] if there are several.
 pub(crate) fn reject_several_ranks(why: &str) -> Result<(), PhysicsFailure> {
     match ranks::current_backend().count() {
         1 => Ok(()),

@@ -28,7 +28,7 @@ pub trait Simulation: Send {
     /// Advances until the first of some moments is reached, or soon after `interrupted` is set.
     ///
     /// # Errors
-    /// [`Failure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
+    /// [`PhysicsFailure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
     fn advance(&mut self, until: &[Until], interrupted: &AtomicBool) -> Result<(), PhysicsFailure>;
 
     /// Progress so far.
@@ -50,7 +50,7 @@ pub trait Simulation: Send {
     /// Checks what only sums over all particles show; called before every row and at the end.
     ///
     /// # Errors
-    /// [`Failure`] as of [`advance`](Self::advance), where such a sum is wrong or cannot be computed.
+    /// [`PhysicsFailure`] as of [`advance`](Self::advance), where such a sum is wrong or cannot be computed.
     fn check(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
@@ -59,12 +59,12 @@ pub trait Simulation: Send {
     /// rank.
     ///
     /// # Errors
-    /// [`Failure`] that names the first rank that was lost.
+    /// [`PhysicsFailure`] that names the first rank that was lost.
     fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
 
-    /// Value of each of the method's quantities. Interval means cover the time since the last [`row`](Self::row), or since the start.
+    /// Value of each of the method's quantities. Interval means cover the time since the last [`wall_row`](Self::wall_row), or since the start.
     fn observe(&self) -> Vec<f64>;
 
     /// Values of [`observe`](Self::observe) as a row: the next interval begins here.

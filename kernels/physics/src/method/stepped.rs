@@ -32,7 +32,7 @@ pub trait SteppedState: Send {
     /// Checks that no rank is lost: samples taken since then lack its particles.
     ///
     /// # Errors
-    /// [`Failure`] that names the first rank that was lost.
+    /// [`PhysicsFailure`] that names the first rank that was lost.
     fn check_ranks(&self) -> Result<(), PhysicsFailure> {
         Ok(())
     }

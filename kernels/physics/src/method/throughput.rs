@@ -227,7 +227,7 @@ impl ThroughputRun {
     /// Result of all repeats.
     ///
     /// # Errors
-    /// [`Failure`] if a rank was lost.
+    /// [`PhysicsFailure`] if a rank was lost.
     ///
     /// # Panics
     /// If there was no repeat.

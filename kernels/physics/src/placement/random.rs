@@ -77,7 +77,7 @@ const TRIES: usize = 200_000;
 /// Places discs with ids from 1 on, at rest, one after the other where they overlap nothing. The result depends on the filling alone.
 ///
 /// # Errors
-/// [`Jammed`] if a disc finds no free space.
+/// [`PlacementJammed`] if a disc finds no free space.
 pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, PlacementJammed> {
     let RandomPlacement { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } =
         *filling;

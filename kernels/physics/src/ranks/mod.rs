@@ -91,7 +91,7 @@ impl dyn Ranks + '_ {
         once(Ok(own)).chain(others).collect()
     }
 
-    /// Broadcasts a serialised message as [`tell`](Ranks::tell) does.
+    /// Broadcasts a serialised message as [`broadcast`](Ranks::broadcast) does.
     ///
     /// # Errors
     /// [`RankError`]

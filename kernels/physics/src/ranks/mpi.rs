@@ -49,7 +49,7 @@ pub fn abort(code: u8) -> ! {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct World;
 
-/// Rank of this process, as a [`Crew`](super::Crew) needs it.
+/// Rank of this process, as a [`RankBackend`](super::Crew) needs it.
 pub fn world() -> Box<dyn Ranks> {
     Box::new(World)
 }

@@ -33,7 +33,7 @@ impl StartFile {
     /// Returns the last frame, as the first of the runs that share it has read it.
     ///
     /// # Errors
-    /// [`ReadError`] if the file cannot be read or has no frame.
+    /// [`XyzReadError`] if the file cannot be read or has no frame.
     pub(crate) fn last_frame(&self) -> Result<ParticleFrame, XyzReadError> {
         let known = self.shared.as_ref().and_then(|shared| shared.get());
         if let Some((_, frame)) = known.filter(|(path, _)| *path == self.path) {

@@ -151,7 +151,7 @@ impl SampleCells {
     }
 
     /// Span of discs that may be within reach of a position in a row of the box. The span is in the row `up` above it (below, if negative), and
-    /// `half` is its half-width there ([`Cells::halves`]). Empty if there is no such row.
+    /// `half` is its half-width there ([`SampleCells::halves`]). Empty if there is no such row.
     #[inline(always)]
     pub(super) fn span(&self, row: usize, up: i64, x: f64, half: f64) -> Range<usize> {
         let [columns, rows] = self.all();

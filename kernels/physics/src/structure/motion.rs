@@ -66,7 +66,7 @@ impl MotionHistory {
         MotionHistory { discs, looks: 0, times: [0.0; 2], kept: vec![], spare: vec![] }
     }
 
-    /// Restores what [`Motion::ends`] and [`Motion::column`] returned; none if it does not fit the discs.
+    /// Restores what [`MotionHistory::ends`] and [`MotionHistory::column`] returned; none if it does not fit the discs.
     pub(crate) fn restored(
         discs: usize,
         looks: u64,

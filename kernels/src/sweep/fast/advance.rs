@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A pass leaves the predicted state. An observer needs the state at the end of the step and corrects a copy
-//! ([`Motion::corrected`]). So every column is read once and written once a step. The same pass, while everything is in
+//! ([`EquationOfMotion::corrected`]). So every column is read once and written once a step. The same pass, while everything is in
 //! registers:
 //!
 //! - sets the sums of forces to zero for the next sweep;

@@ -17,7 +17,7 @@
 //! - *The last register is padded with a pair of sentinels*, two discs behind the others that never touch. So the law needs no
 //!   second version for partial registers.
 //! - *Reads are not bounds-checked.* Columns are checked once a sweep, pairs are of discs by the [`Finder`](super::Finder)'s
-//!   contract, and a law can read only the columns it states ([`Stated`]).
+//!   contract, and a law can read only the columns it states ([`StatedEnv`]).
 
 use super::pairs::{DiscPair, PairSequence, SENTINELS};
 use crate::backend::{GROUP, RegisterTask};
@@ -138,7 +138,7 @@ impl<R: Registers, S: Element> GatherEnv<'_, R, S> {
     fn gather(&self, column: &[S], discs: &LaneArray<u32>) -> R::V {
         assemble(self.registers, |lane| {
             // SAFETY: the positions and the columns of the fields that the law states have an entry for every disc and for the
-            // sentinels (checked by Sweep); `Stated` rejects reads of other columns. Pairs are of discs (Finder's contract), and
+            // sentinels (checked by Sweep); `StatedEnv` rejects reads of other columns. Pairs are of discs (Finder's contract), and
             // lanes without a pair have the sentinels.
             R::Lane::from_f64(unsafe { column.get_unchecked(discs[lane] as usize) }.to_f64())
         })
@@ -300,7 +300,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P,
             own_sums: [zero(), zero(), zero()],
             partner_sums: [zero(), zero(), zero()],
         };
-        // Only through `Stated`, which makes the unchecked reads of columns sound for any law.
+        // Only through `StatedEnv`, which makes the unchecked reads of columns sound for any law.
         let env = StatedEnv::new(&gathered, self.law);
         let disc = self.law.own(env);
         self.law.pair(env, (), &disc);

@@ -9,9 +9,9 @@ const INDEX: Slot<u32> = Slot::new(Array::Index);
 const HALO_CELL: Slot<u32> = Slot::new(Array::HaloCell);
 const HALO_SOURCE: Slot<u32> = Slot::new(Array::HaloSource);
 
-/// Counts discs outside the lattice or with a position that is not a number. Written by [`Enter`].
+/// Counts discs outside the lattice or with a position that is not a number. Written by [`EnterDiscs`].
 pub const STRAYS: LaneCounter = LaneCounter(0);
-/// Counts discs whose cell another disc took, and strays again. Written by [`Check`].
+/// Counts discs whose cell another disc took, and strays again. Written by [`CheckIndex`].
 pub const CONFLICTS: LaneCounter = LaneCounter(1);
 
 /// Empties the Index. Vector length: the padded lattice.

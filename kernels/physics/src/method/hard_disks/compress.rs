@@ -25,7 +25,7 @@ const MOST: u64 = 40_000;
 /// Moves discs so that they can grow from `scale` times their radii to the full radii. Velocities stay unchanged.
 ///
 /// # Errors
-/// [`Uncompressed`], with the packing fraction reached, or if the box is too small.
+/// [`CompressionFailure`], with the packing fraction reached, or if the box is too small.
 pub fn compress(
     domain: &Domain,
     grains: &mut [Particle],

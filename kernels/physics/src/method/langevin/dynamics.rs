@@ -59,7 +59,7 @@ impl Dynamics for BathDynamics {
 /// Creates the stepper of all or some particles of a checked scene, at their start.
 ///
 /// # Errors
-/// [`Failure`] if the start breaks a precondition, or the processor lacks the instructions.
+/// [`PhysicsFailure`] if the start breaks a precondition, or the processor lacks the instructions.
 pub(super) fn stepper(
     checked: &CheckedLangevin,
     particles: Particles,

@@ -46,7 +46,7 @@ type LangevinSimulation = Stepped<LangevinRunState>;
 /// Creates the simulation at the start.
 ///
 /// # Errors
-/// [`Failure`] if the start breaks a precondition.
+/// [`PhysicsFailure`] if the start breaks a precondition.
 pub(super) fn begin(
     checked: &CheckedLangevin,
     purpose: StartPurpose,

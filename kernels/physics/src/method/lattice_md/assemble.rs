@@ -68,7 +68,7 @@ pub(super) fn contacts(checked: &CheckedGranularScene) -> ContactSearch {
 /// Builds the discs of a checked scene at the start.
 ///
 /// # Errors
-/// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
+/// [`PhysicsFailure`] if the start violates a precondition, or the processor lacks the requested instruction set.
 pub fn assemble(checked: &CheckedGranularScene) -> Result<SteppedGrains, PhysicsFailure> {
     started_grains(checked, model(checked))
 }

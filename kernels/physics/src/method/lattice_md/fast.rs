@@ -35,7 +35,7 @@ pub enum FastSearch {
 /// Places discs with state of precision `S` and forces of precision `P`, and chooses the search once.
 ///
 /// # Errors
-/// [`Failure`] if the start violates a precondition, or the box does not suit sectors.
+/// [`PhysicsFailure`] if the start violates a precondition, or the box does not suit sectors.
 pub(super) fn stepping<S: Precision, P: Precision>(
     model: &GranularModel,
     search: FastSearch,

@@ -30,7 +30,7 @@ impl SteppedGrains {
     /// Places `particles` and computes their first forces, in the requested precision.
     ///
     /// # Errors
-    /// [`Failure`] if the start violates a precondition, or the box does not suit sectors.
+    /// [`PhysicsFailure`] if the start violates a precondition, or the box does not suit sectors.
     pub fn start(
         precision: Precision,
         model: GranularModel,
@@ -70,7 +70,7 @@ impl SteppedGrains {
     /// Advances by one time step.
     ///
     /// # Errors
-    /// [`Failure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
+    /// [`PhysicsFailure`] says what broke, which particles, where, and what to do. The state is that of the failing step.
     pub fn step(&mut self) -> Result<(), PhysicsFailure> {
         let far = self.stepping.advance()?;
         check_step_lengths(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;

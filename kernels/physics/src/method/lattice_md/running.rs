@@ -50,7 +50,7 @@ pub(super) struct GranularRun {
 /// Starts the discs of a checked scene.
 ///
 /// # Errors
-/// [`Failure`] if the start violates a precondition, or the processor lacks the requested instruction set.
+/// [`PhysicsFailure`] if the start violates a precondition, or the processor lacks the requested instruction set.
 pub(super) fn begin(
     checked: &CheckedGranularScene,
     purpose: StartPurpose,

@@ -56,7 +56,7 @@ impl GravityField {
     /// Creates the field of a scene's bodies, on the current number of ranks.
     ///
     /// # Errors
-    /// [`Failure`] if the bodies cannot be distributed to the number of ranks.
+    /// [`PhysicsFailure`] if the bodies cannot be distributed to the number of ranks.
     pub fn new(scene: &NbodyScene, bodies: &PointMasses) -> Result<Self, PhysicsFailure> {
         if !matches!(scene.engine, ForceEngine::Fast | ForceEngine::Auto) {
             reject_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
@@ -242,7 +242,7 @@ impl StepField<'_> {
     /// Energy of all pairs at the positions at the end of the step.
     ///
     /// # Errors
-    /// As [`Attraction::potential`].
+    /// As [`GravityField::potential`].
     pub fn energy(&mut self, position: &StateColumns) -> Result<f64, ProgramError> {
         self.energy.take().map_or_else(|| self.attraction.potential(position, self.stop), Ok)
     }

@@ -23,7 +23,7 @@ const TOO_MANY: FailureKind = FailureKind::new("too-many-ranks");
 /// Creates the sums of the first rank, which use all ranks.
 ///
 /// # Errors
-/// [`Failure`] if there are more ranks than bands. In a process that is not the first rank, the failure reports its dismissal.
+/// [`PhysicsFailure`] if there are more ranks than bands. In a process that is not the first rank, the failure reports its dismissal.
 pub(super) fn ranked_sums<P: Precision>(
     scene: &NbodyScene,
     bodies: &PointMasses,

@@ -80,7 +80,7 @@ struct StepResult {
 /// Creates the simulation at the start.
 ///
 /// # Errors
-/// [`Failure`] if the processor lacks the instruction set, or the bodies cannot be distributed to the number of ranks.
+/// [`PhysicsFailure`] if the processor lacks the instruction set, or the bodies cannot be distributed to the number of ranks.
 pub(super) fn begin(
     checked: &CheckedNbody,
     purpose: StartPurpose,

@@ -12,7 +12,7 @@ pub(crate) struct CarriedState {
     pub(crate) scales: [f64; DERIVATIVES],
 }
 
-/// Queries an integrator for its [`Carried`] form, for steps of `dt` (time).
+/// Queries an integrator for its [`CarriedState`] form, for steps of `dt` (time).
 pub(crate) struct CarriedQuery {
     /// The step (time).
     pub dt: f64,

@@ -58,7 +58,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Places `particles`. Their forces are unknown until [`compute_forces`](super::Stepping::compute_forces).
     ///
     /// # Errors
-    /// [`Failure`] if a disc is outside the box, or in an occupied cell.
+    /// [`PhysicsFailure`] if a disc is outside the box, or in an occupied cell.
     pub(super) fn new(
         dynamics: Arc<dyn CompiledDynamics<S, P, Q>>,
         system: PairSystem,

@@ -24,7 +24,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Updates all cells from the predicted positions, before their forces are computed.
     ///
     /// # Errors
-    /// [`Failure`] if a particle belongs to no cell.
+    /// [`PhysicsFailure`] if a particle belongs to no cell.
     pub(super) fn settle_all(&mut self) -> Result<Vec<CellChange>, PhysicsFailure> {
         let looked = self.search_cells(0..self.state.len());
         let moves = self.changes_of(vec![looked])?;

@@ -133,7 +133,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Restores what [`columns_of`](Self::columns_of) returned; `entries` maps each disc in memory to its entry, of `length` in all.
     ///
     /// # Errors
-    /// As [`take_up`](Self::take_up).
+    /// As [`restore_state`](Self::restore_state).
     pub(super) fn restore_discs(
         &mut self,
         columns: &[(String, CheckpointColumn)],

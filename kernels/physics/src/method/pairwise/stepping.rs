@@ -21,19 +21,19 @@ pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
     /// missed, or whose speed is not a number.
     ///
     /// # Errors
-    /// [`Failure`] if a disc left the box or entered an occupied cell.
+    /// [`PhysicsFailure`] if a disc left the box or entered an occupied cell.
     fn advance(&mut self) -> Result<Vec<u32>, PhysicsFailure>;
 
     /// Computes all forces at the current positions.
     ///
     /// # Errors
-    /// [`Failure`] if a force is not finite, or the machine rejects the law.
+    /// [`PhysicsFailure`] if a force is not finite, or the machine rejects the law.
     fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure>;
 
     /// Completes the step after its forces are checked, if the corrector waits for it.
     ///
     /// # Errors
-    /// [`Failure`] if a correction is not finite.
+    /// [`PhysicsFailure`] if a correction is not finite.
     fn finish(&mut self) -> Result<(), PhysicsFailure> {
         Ok(())
     }
@@ -106,7 +106,7 @@ pub(crate) trait RemovableDiscs: SteppingDiscs {
     /// Skips the forces of a step in which no pair acts.
     ///
     /// # Errors
-    /// [`Failure`] if particles cannot be redistributed to their ranks.
+    /// [`PhysicsFailure`] if particles cannot be redistributed to their ranks.
     fn skip_forces(&mut self) -> Result<(), PhysicsFailure>;
 
     /// Returns the particles, by their numbers in the scene and rising, that belong to no cell or have a value that is not finite.
@@ -115,7 +115,7 @@ pub(crate) trait RemovableDiscs: SteppingDiscs {
     /// Updates all cells from the predicted positions, before their forces are computed.
     ///
     /// # Errors
-    /// [`Failure`] if a particle belongs to no cell.
+    /// [`PhysicsFailure`] if a particle belongs to no cell.
     fn settle(&mut self) -> Result<(), PhysicsFailure>;
 }
 

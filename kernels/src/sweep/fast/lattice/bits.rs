@@ -21,7 +21,7 @@ impl CellBits {
         if bit { *word |= mask } else { *word &= !mask }
     }
 
-    /// Number of positions from which [`from`](Self::from) may read.
+    /// Number of positions from which [`bits_from`](Self::bits_from) may read.
     #[inline]
     pub(super) fn positions(&self) -> usize {
         (self.0.len() - 1) * 64

@@ -178,7 +178,7 @@ impl Occupancy {
     /// Places a disc of some radius (length) in a cell, at a position relative to the cell's centre (length).
     ///
     /// # Errors
-    /// [`Taken`] if another disc is there; nothing has changed then.
+    /// [`CellTaken`] if another disc is there; nothing has changed then.
     ///
     /// # Panics
     /// If the disc is already in a cell, or there is no such disc or cell.

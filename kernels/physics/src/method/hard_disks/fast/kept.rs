@@ -45,7 +45,7 @@ impl Fast {
         kept
     }
 
-    /// Resumes with discs from the state of [`kept`](Self::kept). Returns a message if it does not fit them.
+    /// Resumes with discs from the state of [`engine_snapshot`](Self::engine_snapshot). Returns a message if it does not fit them.
     pub(super) fn take_up(&mut self, discs: Vec<FlyingDisc>, kept: &Snapshot) -> Result<(), String> {
         let count = discs.len();
         let registered = [kept.numbers(REGISTERED[0], count)?, kept.numbers(REGISTERED[1], count)?];

@@ -113,7 +113,7 @@ impl DiscNeighbourLists {
         &row[..count]
     }
 
-    /// Returns the whole row of a disc, as [`earliest`](stripmine_kernels::flight::earliest) takes it, and the number of listed discs.
+    /// Returns the whole row of a disc, as [`earliest_collision`](stripmine_kernels::flight::earliest_collision) takes it, and the number of listed discs.
     #[inline(always)]
     pub(super) fn row(&self, disc: u32) -> (&[u32], usize) {
         let row = &self.rows[disc as usize * self.stride..][..self.stride];

@@ -269,7 +269,7 @@ impl Fast {
         }))
     }
 
-    /// Implements [`Engine::next`] for a register type.
+    /// Implements [`EventEngine::next`] for a register type.
     #[inline(always)]
     fn next_on<R: Registers<Lane = f64>>(
         &mut self,

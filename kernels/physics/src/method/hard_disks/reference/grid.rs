@@ -56,7 +56,7 @@ pub(crate) trait DiscCells: Send {
     /// Assigns every disc to the cell of its position inside the box (length).
     ///
     /// # Errors
-    /// [`Misfit`] if two discs share a cell or one is too high.
+    /// [`CellMisfit`] if two discs share a cell or one is too high.
     fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit>;
 
     /// Position of a disc at the last fill (length).

@@ -27,7 +27,7 @@ pub trait AccelerationField {
     /// Calculates the accelerations at the end of a step, whose energy may be needed next.
     ///
     /// # Errors
-    /// As [`Field::acceleration`].
+    /// As [`AccelerationField::acceleration`].
     fn last_acceleration(
         &mut self,
         position: &StateColumns,
@@ -39,7 +39,7 @@ pub trait AccelerationField {
     /// Calculates the accelerations and their time derivatives, one per entry of `orders`, the acceleration first.
     ///
     /// # Errors
-    /// As [`Field::acceleration`].
+    /// As [`AccelerationField::acceleration`].
     fn derivatives(
         &mut self,
         position: &StateColumns,
@@ -69,12 +69,12 @@ pub trait BodyIntegrator: Send {
         vec![]
     }
 
-    /// Number of columns of [`carried`](Self::carried) after a step.
+    /// Number of columns of [`carried_columns`](Self::carried_columns) after a step.
     fn carries(&self) -> usize {
         0
     }
 
-    /// Restores the values of [`carried`](Self::carried), without padding; the bodies are already restored.
+    /// Restores the values of [`carried_columns`](Self::carried_columns), without padding; the bodies are already restored.
     fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>);
 
     /// True if the scheme dissipates energy on purpose.

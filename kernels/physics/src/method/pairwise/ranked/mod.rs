@@ -30,10 +30,10 @@ use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 
-/// Starts stepping discs on as many ranks as [`ranks::crew`] has: with an [`Engine`] alone, or with several.
+/// Starts stepping discs on as many ranks as [`ranks::crew`] has: with an [`PairEngine`] alone, or with several.
 ///
 /// # Errors
-/// As [`Engine::new`], or if the scene has fewer bands than there are ranks.
+/// As [`PairEngine::new`], or if the scene has fewer bands than there are ranks.
 pub(crate) fn begin<S, P, Q, D>(
     (dynamics, system, set): (D, PairSystem, InstructionSet),
     search: Q,

@@ -4,7 +4,7 @@
 //! discs in memory    owned | of other ranks, near these | walls, on every rank
 //! ```
 //!
-//! The discs stay the same between two *migrations*. Owned discs may meanwhile move some rows beyond the rank's own ([`Layout`]); the sweep allows
+//! The discs stay the same between two *migrations*. Owned discs may meanwhile move some rows beyond the rank's own ([`BandLayout`]); the sweep allows
 //! for that, and when one has moved farther, all ranks redistribute their discs. Neighbours' discs receive positions and velocities from their own
 //! rank at every step, and then change cells as they do there.
 

@@ -34,7 +34,7 @@ pub(crate) trait SearchCells<S: Precision>: Send + Sync {
     /// Enters a disc into a cell.
     ///
     /// # Errors
-    /// [`Taken`] if another disc owns the cell.
+    /// [`CellTaken`] if another disc owns the cell.
     fn enter(&mut self, to: &CellMove, state: &MovingDiscs<S>) -> Result<(), CellTaken>;
 
     /// Updates the position of a disc that stays in its cell.
