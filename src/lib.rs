@@ -17,10 +17,10 @@
 //! BP93's cost of a program, NOP·(n + D), on its machine with D = 20: two loads, a product and a store over 100 elements:
 //!
 //! ```
-//! use stripmine::model::clock::{Clock, Work};
+//! use stripmine::model::clock::{Clock, ProgramWork};
 //! use stripmine::model::machines;
 //! use stripmine_kernels::Program;
-//! use stripmine_kernels::isa::{Array, Machine, Slot, Text};
+//! use stripmine_kernels::isa::{Array, Machine, Slot, Kernel};
 //!
 //! /// fx = x y, for every element.
 //! struct Product;
@@ -30,14 +30,14 @@
 //! const FX: Slot<f64> = Slot::new(Array::Fx);
 //!
 //! // SAFETY: the body names the same slots whenever it is called.
-//! unsafe impl Text for Product {
+//! unsafe impl Kernel for Product {
 //!     type Lane = f64;
 //!     fn body<M: Machine<Lane = f64>>(&self, m: M) {
 //!         m.store(FX, m.load(X) * m.load(Y));
 //!     }
 //! }
 //!
-//! let work = Work::of(&Program::new(Product));
+//! let work = ProgramWork::of(&Program::new(Product));
 //! let paper = machines::preset("paper")?;
 //! assert_eq!(Clock::Paper.clocks(&paper, &work, 100), 4.0 * (100.0 + 20.0));
 //! assert_eq!(Clock::Scalar.clocks(&paper, &work, 100), 4.0 * 100.0 * 20.0);
@@ -47,13 +47,13 @@
 //! A table, and an expression over its cells, as in claims:
 //!
 //! ```
-//! use stripmine::frame::{Expressions, Rows, Scope};
+//! use stripmine::frame::{Expressions, FrameBuilder, ExpressionScope};
 //!
-//! let rates = Rows::of([(100_u64, 2.0), (200, 3.0)])
+//! let rates = FrameBuilder::of([(100_u64, 2.0), (200, 3.0)])
 //!     .count("particles", |&(particles, _)| particles)
 //!     .number("rate", 1, |&(_, rate)| rate)
 //!     .frame("rates", "Rates");
-//! let scope = Scope::of([rates]);
+//! let scope = ExpressionScope::of([rates]);
 //! let value = Expressions::new().value("rates.at(particles=200).rate / rates.at(particles=100).rate", &scope)?;
 //! assert_eq!(value.to_string(), "1.5");
 //! # Ok::<(), String>(())

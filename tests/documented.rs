@@ -186,11 +186,7 @@ fn commands_are_in_blocks_that_are_run() {
         let run: Vec<usize> = shown(&text).iter().map(|it| it.line).collect();
         for (at, line) in text.lines().enumerate() {
             let command = line.trim_start_matches("$ ");
-            if command.starts_with("stripmine ")
-                && line.len() < 200
-                && !run.contains(&(at + 1))
-                && !is_prose(&text, at)
-            {
+            if command.starts_with("stripmine ") && is_unchecked(&text, at) && !run.contains(&(at + 1)) {
                 faults.push(format!(
                     "{}:{}: {line}",
                     document.strip_prefix(root()).unwrap().display(),

@@ -1,6 +1,6 @@
 //! The vector machine of Stripmine.
 //!
-//! Equations are written once, as operations on whole vectors: a kernel ([`isa::Text`]). A kernel is recorded, counted and listed
+//! Equations are written once, as operations on whole vectors: a kernel ([`isa::Kernel`]). A kernel is recorded, counted and listed
 //! (a [`backend::Tape`]). It is executed as on a CRAY in 1993, strip-mined, or chained through the SIMD registers of the
 //! processor at hand ([`Program::run`]), with the same bits.
 //!
@@ -8,7 +8,7 @@
 //!
 //! | task | entry point |
 //! |---|---|
-//! | write equations as a kernel, list it, run it | [`isa::Text`], [`Program`] |
+//! | write equations as a kernel, list it, run it | [`isa::Kernel`], [`Program`] |
 //! | count its operations, by part of a step | [`isa::OpCounts`], [`ledger::Ledger`] |
 //! | evaluate pair laws | [`law`]; their sums over all pairs, lists, lattices, sectors: [`sweep`] |
 //! | run BP93's own program, line by line | [`printed`] |
@@ -18,18 +18,18 @@
 //! A kernel of seven operations, in three executions:
 //!
 //! ```
-//! use stripmine_kernels::isa::{Array, Machine, Memory, Slot, Text, Vector};
+//! use stripmine_kernels::isa::{Array, Machine, Memory, Slot, Kernel, Vector};
 //! use stripmine_kernels::{Execution, InstructionSet, Program};
 //!
 //! /// fx = √(x² + y²), for every element.
-//! struct Length;
+//! struct VectorLength;
 //!
 //! const X: Slot<f64> = Slot::new(Array::X);
 //! const Y: Slot<f64> = Slot::new(Array::Y);
 //! const FX: Slot<f64> = Slot::new(Array::Fx);
 //!
-//! SAFETY: the body names the same slots in every call.
-//! unsafe impl Text for Length {
+//! // SAFETY: the body names the same slots in every call.
+//! unsafe impl Kernel for VectorLength {
 //!     type Lane = f64;
 //!     fn body<M: Machine<Lane = f64>>(&self, m: M) {
 //!         let [x, y] = [m.load(X), m.load(Y)];
@@ -37,7 +37,7 @@
 //!     }
 //! }
 //!
-//! let program = Program::new(Length);
+//! let program = Program::new(VectorLength);
 //! assert_eq!(program.tape().instructions().len(), 7);
 //! assert!(program.tape().listing().to_string().contains("sqrt"));
 //!
@@ -55,11 +55,11 @@
 //! ```
 //! use stripmine_kernels::Program;
 //! use stripmine_kernels::isa::OpClass;
-//! use stripmine_kernels::ledger::{Ledger, Length};
-//! use stripmine_kernels::printed::Predictor;
+//! use stripmine_kernels::ledger::{Ledger, VectorLength};
+//! use stripmine_kernels::printed::PrintedPredictor;
 //!
 //! let mut ledger = Ledger::default();
-//! ledger.enter("predictor", Length::Grains, &Program::new(Predictor::<f64, 6, 2>::new(1e-4)));
+//! ledger.enter("predictor", VectorLength::Grains, &Program::new(PrintedPredictor::<f64, 6, 2>::new(1e-4)));
 //! let counts = ledger.part("predictor");
 //! assert_eq!((counts.of_class(OpClass::Multiply), counts.of_class(OpClass::Add)), (30, 30));
 //! ```
@@ -69,10 +69,10 @@
 //! ```
 //! use stripmine_kernels::law::lennard_jones::LennardJones;
 //! use stripmine_kernels::law::potential::CutOff;
-//! use stripmine_kernels::sweep::pair::{Body, Pair};
+//! use stripmine_kernels::sweep::pair::{PairBody, Pair};
 //!
 //! let law = CutOff::new(LennardJones::new(1.0, 1.0), 2.5);
-//! let pair = Pair { bodies: [Body::at(0.0, 0.0), Body::at(1.0, 0.0)] };
+//! let pair = Pair { bodies: [PairBody::at(0.0, 0.0), PairBody::at(1.0, 0.0)] };
 //! let [[own, ..], [partner, ..]] = pair.sums(&law);
 //! assert_eq!((own, partner), (-24.0, 24.0));
 //! ```

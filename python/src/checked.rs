@@ -1,54 +1,54 @@
 //! Scenes that were read and checked against every precondition.
 
 use crate::particles::dimensions;
-use stripmine_physics::method::{Entry, METHODS, Prepared, prepare, vocabularies};
-use stripmine_physics::scene::{SceneErrors, Values};
+use stripmine_physics::method::{METHODS, MethodEntry, Prepared, prepare, vocabularies};
+use stripmine_physics::scene::{SceneErrors, SceneValues};
 
 /// Name in errors of a scene given as text.
 const OF_TEXT: &str = "scene";
 
 /// Source of a scene.
 #[derive(Clone)]
-pub(crate) enum Source {
+pub(crate) enum SceneSource {
     /// Preset name or file path.
     Named(String),
     /// Text in TOML.
     Text(String),
 }
 
-impl Source {
+impl SceneSource {
     /// Name in errors.
     pub(crate) fn name(&self) -> &str {
         match self {
-            Source::Named(name) => name,
-            Source::Text(_) => OF_TEXT,
+            SceneSource::Named(name) => name,
+            SceneSource::Text(_) => OF_TEXT,
         }
     }
 
-    pub(crate) fn values(&self, given: &[String]) -> Result<Values, SceneErrors> {
+    pub(crate) fn values(&self, given: &[String]) -> Result<SceneValues, SceneErrors> {
         let known = vocabularies(METHODS);
         match self {
-            Source::Named(name) => Values::load(name, given, &known),
-            Source::Text(text) => Values::parse(OF_TEXT, text, given, &known),
+            SceneSource::Named(name) => SceneValues::load(name, given, &known),
+            SceneSource::Text(text) => SceneValues::parse(OF_TEXT, text, given, &known),
         }
     }
 }
 
 /// Scene that was read, passed all checks, and has its particles.
-pub(crate) struct Checked {
+pub(crate) struct CheckedScene {
     pub(crate) prepared: Prepared,
     /// Method of the scene.
-    pub(crate) entry: &'static Entry,
+    pub(crate) entry: &'static MethodEntry,
     /// Dimensions in which the particles move.
     pub(crate) dimensions: usize,
     /// Values as read, before choices are made.
-    pub(crate) values: Values,
+    pub(crate) values: SceneValues,
 }
 
-impl Checked {
-    pub(crate) fn of(values: Values) -> Result<Checked, SceneErrors> {
+impl CheckedScene {
+    pub(crate) fn of(values: SceneValues) -> Result<CheckedScene, SceneErrors> {
         let (prepared, entry) = prepare(values.clone(), METHODS)?;
         let dimensions = dimensions(prepared.particles());
-        Ok(Checked { prepared, entry, dimensions, values })
+        Ok(CheckedScene { prepared, entry, dimensions, values })
     }
 }

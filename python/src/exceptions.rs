@@ -8,12 +8,12 @@ use serde_json::Value;
 use std::io;
 use std::path::Path;
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{Class, Reported};
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::{SceneError, SceneErrors};
 
 /// Converts an error of the physics to its exception.
 pub(crate) fn of(py: Python<'_>, error: &dyn Reported) -> PyErr {
-    let message = quoted::shown(&error.to_string());
+    let message = quoted::escaped_for_terminal(&error.to_string());
     if let Some(mistakes) = error.mistakes() {
         return raised(of_scene(py, &message, mistakes));
     }
@@ -27,9 +27,9 @@ pub(crate) fn of(py: Python<'_>, error: &dyn Reported) -> PyErr {
 }
 
 /// `RunError` for a file that cannot be read or has invalid content.
-pub(crate) fn of_file(py: Python<'_>, class: Class, message: &str, file: &Path) -> PyErr {
+pub(crate) fn of_file(py: Python<'_>, class: ErrorClass, message: &str, file: &Path) -> PyErr {
     let file = file.display().to_string();
-    made(py, "RunError", (quoted::shown(message), class.name(), None::<String>, file))
+    made(py, "RunError", (quoted::escaped_for_terminal(message), class.name(), None::<String>, file))
 }
 
 /// `Error` for an invalid request.

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use stripmine_physics::io::extxyz;
 use stripmine_physics::io::trajectory::{Trajectory, TrajectoryError};
-use stripmine_physics::reported::Class;
+use stripmine_physics::reported::ErrorClass;
 
 class_of_attributes! {
     /// Particles in their box at one time.
@@ -40,12 +40,12 @@ impl Frame {
 /// Frames of a trajectory, each read when it is requested.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Frames {
-    reading: Mutex<Reading>,
+    reading: Mutex<TrajectoryReading>,
     /// Keeps a temporary folder alive while it is read.
     _scratch: Option<Arc<Scratch>>,
 }
 
-struct Reading {
+struct TrajectoryReading {
     frames: Trajectory,
     /// Dimensions in which the particles of the first frame move.
     dimensions: Option<usize>,
@@ -58,13 +58,13 @@ impl Frames {
     /// If it cannot be read.
     pub(crate) fn open(py: Python<'_>, folder: &Path, scratch: Option<Arc<Scratch>>) -> PyResult<Frames> {
         let frames = Trajectory::open(folder).map_err(|error| wrong(py, &error))?;
-        let reading = Mutex::new(Reading { frames, dimensions: None });
+        let reading = Mutex::new(TrajectoryReading { frames, dimensions: None });
         Ok(Frames { reading, _scratch: scratch })
     }
 }
 
 fn wrong(py: Python<'_>, error: &TrajectoryError) -> PyErr {
-    exceptions::of_file(py, Class::Input, &error.words, &error.file)
+    exceptions::of_file(py, ErrorClass::Input, &error.words, &error.file)
 }
 
 #[pymethods]
@@ -76,13 +76,13 @@ impl Frames {
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Frame>> {
         let next = py.detach(|| {
             let mut reading = self.reading.lock().unwrap_or_else(PoisonError::into_inner);
-            let Reading { frames, dimensions: known } = &mut *reading;
+            let TrajectoryReading { frames, dimensions: known } = &mut *reading;
             let frame = frames.next()?;
             Some(frame.map(|frame| (*known.get_or_insert_with(|| dimensions(&frame.particles)), frame)))
         });
         let Some(frame) = next else { return Ok(None) };
         let (dimensions, frame) = frame.map_err(|error| wrong(py, &error))?;
-        let extxyz::Frame { particles, cell, origin, periodic, time, step, .. } = frame;
+        let extxyz::ParticleFrame { particles, cell, origin, periodic, time, step, .. } = frame;
         let particles = Py::new(py, Particles::of(py, particles.all(), dimensions)?)?;
         Ok(Some(Frame { time, step, particles, sides: cell, origin, periodic }))
     }

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
 use stripmine_physics::method::observed::UnknownName;
-use stripmine_physics::method::{Entry, METHODS, Quantity, method};
+use stripmine_physics::method::{METHODS, MethodEntry, ObservedQuantity, method};
 use stripmine_physics::scene::{Fallback, Key};
 
 /// Preset scenes of the package: name and title.
@@ -22,8 +22,8 @@ pub(crate) fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 /// Methods: name, source, description and observed quantities.
 #[pyfunction]
 pub(crate) fn methods(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-    let quantity = |it: &Quantity| json!({ "name": it.name, "unit": it.unit, "doc": it.doc });
-    let one = |entry: &&Entry| {
+    let quantity = |it: &ObservedQuantity| json!({ "name": it.name, "unit": it.unit, "doc": it.doc });
+    let one = |entry: &&MethodEntry| {
         json!({
             "name": entry.vocabulary.keys.method,
             "source": entry.source,

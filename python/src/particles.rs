@@ -3,7 +3,7 @@
 use crate::pickling::class_of_attributes;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use stripmine_physics::particles::{self, Kind, Particle};
+use stripmine_physics::particles::{self, Particle, ParticleKind};
 
 class_of_attributes! {
     /// Particles at one time, as arrays: moving particles first, then wall discs. N is their number; D is 2, or 3 for bodies in space.
@@ -39,7 +39,7 @@ impl Particles {
         let numbers = |of: fn(&Particle) -> f64| column(py, all.iter().map(of).collect());
         Ok(Particles {
             id: column(py, all.iter().map(|it| it.id).collect()),
-            wall: column(py, all.iter().map(|it| it.kind == Kind::Wall).collect()),
+            wall: column(py, all.iter().map(|it| it.kind == ParticleKind::Wall).collect()),
             positions: vectors(|it| it.position)?,
             velocities: vectors(|it| it.velocity)?,
             angle: numbers(|it| it.angle),

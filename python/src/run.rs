@@ -5,16 +5,16 @@ use crate::exceptions;
 use crate::frames::Frames;
 use crate::json;
 use crate::scratch::Scratch;
-use crate::table::{Column, Table};
+use crate::table::{Table, TableColumn};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stripmine_physics::averages::{Average, Averages, Estimate, Outcome};
+use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::io::{FileError, regular_file};
 use stripmine_physics::method::{METHODS, observer};
-use stripmine_physics::reported::Class;
-use stripmine_physics::run::{Finished, TableError, TableReader, averages_of};
+use stripmine_physics::reported::ErrorClass;
+use stripmine_physics::run::{FinishedRun, TableError, TableReader, averages_of};
 
 const THERMO: &str = "thermo.csv";
 const SCENE: &str = "scene.toml";
@@ -60,8 +60,8 @@ impl Run {
         Run { folder: scratch.path().to_owned(), scratch: Some(Arc::new(scratch)) }
     }
 
-    fn finished(&self, py: Python<'_>) -> PyResult<Finished> {
-        let read = py.detach(|| Finished::read(&self.folder, METHODS));
+    fn finished(&self, py: Python<'_>) -> PyResult<FinishedRun> {
+        let read = py.detach(|| FinishedRun::read(&self.folder, METHODS));
         read.map_err(|error| exceptions::of(py, &error))
     }
 
@@ -69,7 +69,7 @@ impl Run {
         let path = self.folder.join(name);
         let bytes = regular_file::read(&path, LONGEST_TEXT).map_err(|cause| {
             let error = FileError::at(&path, "reading")(cause);
-            exceptions::of_file(py, Class::InputOutput, &error.to_string(), &path)
+            exceptions::of_file(py, ErrorClass::InputOutput, &error.to_string(), &path)
         })?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
@@ -131,32 +131,32 @@ fn thermo(path: &Path) -> Result<Table, TableError> {
     }
     let unit = |name: &str| units.iter().find(|it| it.name == name).map_or("", |it| it.unit);
     let columns = names.iter().zip(values).enumerate().map(|(place, (name, values))| match place {
-        0 => Column::counts(name, values.into_iter().map(|value| value as u64).collect()),
-        _ => Column::numbers(name, unit(name), values),
+        0 => TableColumn::counts(name, values.into_iter().map(|value| value as u64).collect()),
+        _ => TableColumn::numbers(name, unit(name), values),
     });
     Ok(Table::new(columns.collect()))
 }
 
-fn joined(py: Python<'_>, runs: &[Finished]) -> PyResult<Table> {
+fn joined(py: Python<'_>, runs: &[FinishedRun]) -> PyResult<Table> {
     let averages = computed(py, || averages_of(runs))?;
     Ok(means(&averages.map_err(|error| exceptions::of(py, &error))?))
 }
 
 /// Table of averages, a row for each quantity; missing values are NaN.
-fn means(Averages { quantities, .. }: &Averages) -> Table {
+fn means(RunAverages { quantities, .. }: &RunAverages) -> Table {
     let words = |name: &str, of: &dyn Fn(&Average) -> String| {
-        Column::words(name, quantities.iter().map(of).collect())
+        TableColumn::words(name, quantities.iter().map(of).collect())
     };
-    let numbers = |name: &str, unit: &str, of: fn(&Outcome) -> Option<f64>| {
+    let numbers = |name: &str, unit: &str, of: fn(&AverageOutcome) -> Option<f64>| {
         let values = quantities.iter().map(|it| of(&it.outcome).unwrap_or(f64::NAN));
-        Column::numbers(name, unit, values.collect())
+        TableColumn::numbers(name, unit, values.collect())
     };
     let estimate = |name: &str, unit: &str, of: fn(&Estimate) -> f64| {
         let values = quantities.iter().map(|it| match &it.outcome {
-            Outcome::Mean(estimate) => of(estimate),
+            AverageOutcome::Mean(estimate) => of(estimate),
             _ => f64::NAN,
         });
-        Column::numbers(name, unit, values.collect())
+        TableColumn::numbers(name, unit, values.collect())
     };
     Table::new(vec![
         words("quantity", &|it| it.quantity.to_owned()),
@@ -164,7 +164,7 @@ fn means(Averages { quantities, .. }: &Averages) -> Table {
         words("of", &|it| it.of.to_owned()),
         words("says", &|it| says(&it.outcome).to_owned()),
         numbers("mean", "", |outcome| match *outcome {
-            Outcome::Mean(Estimate { mean, .. }) | Outcome::Constant { mean } => Some(mean),
+            AverageOutcome::Mean(Estimate { mean, .. }) | AverageOutcome::Constant { mean } => Some(mean),
             _ => None,
         }),
         estimate("bar", "", |it| it.bar),
@@ -172,33 +172,33 @@ fn means(Averages { quantities, .. }: &Averages) -> Table {
         estimate("correlation_time", "time", |it| it.correlation_time),
         estimate("equilibrated_at", "time", |it| it.equilibrated_at),
         numbers("independent_samples", "", |outcome| match *outcome {
-            Outcome::Mean(Estimate { independent_samples, .. })
-            | Outcome::TooShort { independent_samples, .. } => Some(independent_samples),
+            AverageOutcome::Mean(Estimate { independent_samples, .. })
+            | AverageOutcome::TooShort { independent_samples, .. } => Some(independent_samples),
             _ => None,
         }),
         numbers("enough_at", "time", |outcome| match *outcome {
-            Outcome::TooShort { enough_at, .. } => Some(enough_at),
+            AverageOutcome::TooShort { enough_at, .. } => Some(enough_at),
             _ => None,
         }),
         numbers("first", "", |outcome| match *outcome {
-            Outcome::Changing { first, .. } | Outcome::Kept { first, .. } => Some(first),
+            AverageOutcome::Changing { first, .. } | AverageOutcome::Kept { first, .. } => Some(first),
             _ => None,
         }),
         numbers("last", "", |outcome| match *outcome {
-            Outcome::Changing { last, .. } | Outcome::Kept { last, .. } => Some(last),
+            AverageOutcome::Changing { last, .. } | AverageOutcome::Kept { last, .. } => Some(last),
             _ => None,
         }),
     ])
 }
 
 /// Word for an outcome, as in `summary.json`.
-fn says(outcome: &Outcome) -> &'static str {
+fn says(outcome: &AverageOutcome) -> &'static str {
     match outcome {
-        Outcome::Mean(_) => "mean",
-        Outcome::Constant { .. } => "constant",
-        Outcome::TooShort { .. } => "too-short",
-        Outcome::Changing { .. } => "changing",
-        Outcome::Kept { .. } => "kept",
-        Outcome::Undefined => "undefined",
+        AverageOutcome::Mean(_) => "mean",
+        AverageOutcome::Constant { .. } => "constant",
+        AverageOutcome::TooShort { .. } => "too-short",
+        AverageOutcome::Changing { .. } => "changing",
+        AverageOutcome::Kept { .. } => "kept",
+        AverageOutcome::Undefined => "undefined",
     }
 }

@@ -1,6 +1,6 @@
 //! Whole runs, which Ctrl-C ends at the next step with a checkpoint.
 
-use crate::checked::Checked;
+use crate::checked::CheckedScene;
 use crate::computing::computed;
 use crate::exceptions;
 use crate::interruption::beside;
@@ -11,7 +11,7 @@ use std::ffi::CString;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::origin::Origin;
-use stripmine_physics::run::{Existing, Job, RunError, run};
+use stripmine_physics::run::{ExistingRun, RunError, RunJob, run};
 
 /// Version and commit of the package, recorded with runs.
 fn built() -> Origin {
@@ -38,12 +38,12 @@ pub(crate) fn begin_scratch(py: Python<'_>) -> PyResult<Scratch> {
 /// `KeyboardInterrupt` after Ctrl-C, with a checkpoint in the folder.
 pub(crate) fn carry_out(
     py: Python<'_>,
-    checked: &Checked,
+    checked: &CheckedScene,
     folder: &Path,
-    existing: Existing,
+    existing: ExistingRun,
 ) -> PyResult<Result<(), RunError>> {
-    let Checked { prepared, entry, .. } = checked;
-    let job = Job { prepared, quantities: entry.quantities, program: &built() };
+    let CheckedScene { prepared, entry, .. } = checked;
+    let job = RunJob { prepared, quantities: entry.quantities, program: &built() };
     let mut notes = vec![];
     let notice = |note: &str| notes.push(note.to_owned());
     let work = |interrupted: &AtomicBool| run(job, folder, existing, interrupted, |_, _| {}, notice);

@@ -1,6 +1,6 @@
 //! Class `Scene`: reads, checks, starts and runs scenes.
 
-use crate::checked::{Checked, Source};
+use crate::checked::{CheckedScene, SceneSource};
 use crate::computing::computed;
 use crate::exceptions;
 use crate::json;
@@ -9,21 +9,21 @@ use crate::particles::Particles;
 use crate::run::Run;
 use crate::running::{begin_scratch, carry_out};
 use crate::simulation::Simulation;
-use crate::table::{Column, Table};
+use crate::table::{Table, TableColumn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stripmine_physics::method::Counted;
-use stripmine_physics::run::{Existing, RunError, chosen_otherwise, forecast};
+use stripmine_physics::method::SectionCounts;
+use stripmine_physics::run::{ExistingRun, RunError, choices_of_the_run, forecast};
 
 /// Scene that was read and checked. `stripmine.scene` makes it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Scene {
-    source: Source,
+    source: SceneSource,
     given: Vec<String>,
-    checked: Arc<Checked>,
+    checked: Arc<CheckedScene>,
 }
 
 /// Reads and checks a scene, and makes its particles.
@@ -36,9 +36,9 @@ pub(crate) struct Scene {
 pub(crate) fn scene(source: &Bound<'_, PyAny>, overrides: Option<&Bound<'_, PyAny>>) -> PyResult<Scene> {
     let py = source.py();
     let named: String = py.import("os")?.call_method1("fspath", (source,))?.extract()?;
-    let source = if named.contains('\n') { Source::Text(named) } else { Source::Named(named) };
+    let source = if named.contains('\n') { SceneSource::Text(named) } else { SceneSource::Named(named) };
     let given = overrides.map(self::overrides).transpose()?.unwrap_or_default();
-    let read = computed(py, || source.values(&given).and_then(Checked::of))?;
+    let read = computed(py, || source.values(&given).and_then(CheckedScene::of))?;
     let checked = Arc::new(read.map_err(|mistakes| exceptions::of(py, &mistakes))?);
     Ok(Scene { source, given, checked })
 }
@@ -51,14 +51,14 @@ impl Scene {
     }
 
     /// The scene with the choices of the run in a folder, where this scene leaves them open.
-    fn as_begun(&self, py: Python<'_>, folder: &Path) -> PyResult<Arc<Checked>> {
-        let Checked { prepared, entry, values, .. } = &*self.checked;
-        let chosen = chosen_otherwise(values, entry.vocabulary, &prepared.scene, folder);
+    fn as_begun(&self, py: Python<'_>, folder: &Path) -> PyResult<Arc<CheckedScene>> {
+        let CheckedScene { prepared, entry, values, .. } = &*self.checked;
+        let chosen = choices_of_the_run(values, entry.vocabulary, &prepared.scene, folder);
         if chosen.is_empty() {
             return Ok(self.checked.clone());
         }
         let given = [self.given.as_slice(), &chosen].concat();
-        let read = computed(py, || self.source.values(&given).and_then(Checked::of))?;
+        let read = computed(py, || self.source.values(&given).and_then(CheckedScene::of))?;
         Ok(Arc::new(read.map_err(|mistakes| exceptions::of(py, &mistakes))?))
     }
 }
@@ -84,12 +84,12 @@ impl Scene {
     /// Step limits, expected time and memory, choices and warnings, as `stripmine scene check --json`.
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.fits(py)?;
-        let Checked { prepared, entry, .. } = &*self.checked;
+        let CheckedScene { prepared, entry, .. } = &*self.checked;
         let mut facts = prepared.facts.clone();
-        facts.extend(forecast::of_the_step(prepared));
-        facts.extend(forecast::of_the_files(prepared));
-        facts.extend(computed(py, || forecast::of_the_time(prepared))?);
-        facts.push(forecast::of_the_memory(prepared));
+        facts.extend(forecast::step_forecast(prepared));
+        facts.extend(forecast::output_forecast(prepared));
+        facts.extend(computed(py, || forecast::time_forecast(prepared))?);
+        facts.push(forecast::memory_forecast(prepared));
         let mut data = Map::new();
         data.insert("scene".to_owned(), json!(self.source.name()));
         data.insert("method".to_owned(), json!(entry.vocabulary.keys.method));
@@ -104,17 +104,18 @@ impl Scene {
     /// run of the scene uses. The table is empty if a step has no vector programs.
     fn counts(&self, py: Python<'_>) -> PyResult<Table> {
         let model = &self.checked.prepared.model;
-        let counted = computed(py, || Counted::of(&model.programs()))?;
-        let words = |of: fn(&Counted) -> &'static str| counted.iter().map(|it| of(it).to_owned()).collect();
-        let counts = |of: fn(&Counted) -> u64| counted.iter().map(of).collect();
+        let counted = computed(py, || SectionCounts::of(&model.programs()))?;
+        let words =
+            |of: fn(&SectionCounts) -> &'static str| counted.iter().map(|it| of(it).to_owned()).collect();
+        let counts = |of: fn(&SectionCounts) -> u64| counted.iter().map(of).collect();
         Ok(Table::new(vec![
-            Column::words("part", words(|it| it.part)),
-            Column::words("section", words(|it| it.section)),
-            Column::words("length", words(|it| it.length)),
-            Column::counts("n", counts(|it| it.n as u64)),
-            Column::counts("operations", counts(|it| it.operations)),
-            Column::counts("computing", counts(|it| it.computing)),
-            Column::counts("divisions_and_roots", counts(|it| it.divisions_and_roots)),
+            TableColumn::words("part", words(|it| it.part)),
+            TableColumn::words("section", words(|it| it.section)),
+            TableColumn::words("length", words(|it| it.length)),
+            TableColumn::counts("n", counts(|it| it.n as u64)),
+            TableColumn::counts("operations", counts(|it| it.operations)),
+            TableColumn::counts("computing", counts(|it| it.computing)),
+            TableColumn::counts("divisions_and_roots", counts(|it| it.divisions_and_roots)),
         ]))
     }
 
@@ -142,9 +143,9 @@ impl Scene {
             (false, _) if other_version => {
                 return Err(exceptions::refused(py, "other_version needs resume=True"));
             }
-            (true, _) => Existing::Resume { other_version },
-            (_, true) => Existing::Overwrite,
-            _ => Existing::Refuse,
+            (true, _) => ExistingRun::Resume { other_version },
+            (_, true) => ExistingRun::Overwrite,
+            _ => ExistingRun::Refuse,
         };
         self.fits(py)?;
         let Some(folder) = out else {

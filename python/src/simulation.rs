@@ -1,6 +1,6 @@
 //! Class `Simulation`: simulations advanced step by step.
 
-use crate::checked::Checked;
+use crate::checked::CheckedScene;
 use crate::computing::computed;
 use crate::exceptions;
 use crate::interruption::beside;
@@ -13,21 +13,21 @@ use pyo3::types::PyDict;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::time::Instant;
-use stripmine_physics::method::{self, Failure, Purpose, Until, steps_over};
-use stripmine_physics::structure::{Setting, net_forces};
+use stripmine_physics::method::{self, PhysicsFailure, StartPurpose, Until, steps_over};
+use stripmine_physics::structure::{StructureSetting, net_forces};
 
 /// Running simulation, for one thread at a time. `Scene.start` makes it.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Simulation {
-    checked: Arc<Checked>,
-    state: Mutex<State>,
+    checked: Arc<CheckedScene>,
+    state: Mutex<SimulationState>,
     /// Flag raised at every beat, so that Ctrl-C is handled.
     pause: Arc<AtomicBool>,
 }
 
-struct State {
+struct SimulationState {
     running: Box<dyn method::Simulation>,
-    broken: Option<Broken>,
+    broken: Option<StopReason>,
     /// True if a step takes longer than a beat, so that it would never end between two.
     is_slow: bool,
     /// Sum of the times of the advances so far; none if the last one was by steps or events, or was interrupted.
@@ -61,20 +61,20 @@ fn two_sum(a: f64, b: f64) -> [f64; 2] {
 }
 
 /// Reason why a simulation cannot continue.
-enum Broken {
+enum StopReason {
     /// The physics failed.
-    Failure(Failure),
+    Failure(PhysicsFailure),
     /// The program panicked in a step.
     Fault,
 }
 
-impl State {
+impl SimulationState {
     /// Checks that it can continue.
     fn is_sound(&self, py: Python<'_>) -> PyResult<()> {
         match &self.broken {
             None => Ok(()),
-            Some(Broken::Failure(failure)) => Err(exceptions::of(py, failure)),
-            Some(Broken::Fault) => Err(exceptions::fault(py, "a step was not completed")),
+            Some(StopReason::Failure(failure)) => Err(exceptions::of(py, failure)),
+            Some(StopReason::Fault) => Err(exceptions::fault(py, "a step was not completed")),
         }
     }
 
@@ -91,7 +91,7 @@ impl State {
     }
 
     /// Advances to the end, or until the flag is set.
-    fn advance(&mut self, end: Until, interrupted: &AtomicBool) -> Result<(), Failure> {
+    fn advance(&mut self, end: Until, interrupted: &AtomicBool) -> Result<(), PhysicsFailure> {
         let advanced = self.running.advance(&[end], interrupted);
         // Only runs write event rows; here they would accumulate.
         self.running.take_events();
@@ -105,7 +105,7 @@ impl State {
         let advanced = computed(py, || self.advance(end, pause));
         self.settle(py, advanced)?;
         let clock = self.running.clock();
-        self.is_slow = !end.has_come(&clock) && clock == from;
+        self.is_slow = !end.has_been_reached(&clock) && clock == from;
         Ok(())
     }
 
@@ -124,16 +124,16 @@ impl State {
     }
 
     /// Records a failure, after which the simulation cannot continue.
-    fn settle(&mut self, py: Python<'_>, advanced: PyResult<Result<(), Failure>>) -> PyResult<()> {
+    fn settle(&mut self, py: Python<'_>, advanced: PyResult<Result<(), PhysicsFailure>>) -> PyResult<()> {
         match advanced {
             Ok(Ok(())) => Ok(()),
             Ok(Err(failure)) => {
                 let error = exceptions::of(py, &failure);
-                self.broken = Some(Broken::Failure(failure));
+                self.broken = Some(StopReason::Failure(failure));
                 Err(error)
             }
             Err(fault) => {
-                self.broken = Some(Broken::Fault);
+                self.broken = Some(StopReason::Fault);
                 Err(fault)
             }
         }
@@ -145,19 +145,19 @@ impl Simulation {
     ///
     /// # Errors
     /// If the start breaks a precondition, or no thread can be started.
-    pub(crate) fn start(py: Python<'_>, checked: Arc<Checked>) -> PyResult<Simulation> {
-        let running = computed(py, || checked.prepared.start(Purpose::Run))?;
+    pub(crate) fn start(py: Python<'_>, checked: Arc<CheckedScene>) -> PyResult<Simulation> {
+        let running = computed(py, || checked.prepared.start(StartPurpose::Run))?;
         let running = running.map_err(|failure| exceptions::of(py, &failure))?;
         let pause = pulse::flag().map_err(|cause| exceptions::without_threads(py, &cause))?;
         Ok(Simulation {
             checked,
-            state: Mutex::new(State { running, broken: None, is_slow: false, asked: None }),
+            state: Mutex::new(SimulationState { running, broken: None, is_slow: false, asked: None }),
             pause,
         })
     }
 
     /// Locks the state, unless another thread has it.
-    fn state(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, State>> {
+    fn state(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, SimulationState>> {
         match self.state.try_lock() {
             Ok(state) => Ok(state),
             // After a panic, `broken` describes the state.
@@ -167,7 +167,7 @@ impl Simulation {
     }
 
     /// Computes a value from the current state.
-    fn look<R: Send>(&self, py: Python<'_>, of: impl FnOnce(&State) -> R + Send) -> PyResult<R> {
+    fn look<R: Send>(&self, py: Python<'_>, of: impl FnOnce(&SimulationState) -> R + Send) -> PyResult<R> {
         let mut state = self.state(py)?;
         let state = &mut *state;
         computed(py, move || of(state))
@@ -224,7 +224,7 @@ impl Simulation {
         if !state.is_slow {
             state.advance_for_a_beat(py, end, &self.pause)?;
         }
-        if !end.has_come(&state.running.clock()) {
+        if !end.has_been_reached(&state.running.clock()) {
             py.check_signals()?;
             state.advance_beside(py, end)?;
         }
@@ -235,14 +235,14 @@ impl Simulation {
     /// Values of the quantities of the method, by name: the columns of `thermo.csv`. `compressibility` and `collision_rate` of hard discs
     /// are means since the start.
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let seen = self.look(py, |State { running, broken, .. }| {
+        let seen = self.look(py, |SimulationState { running, broken, .. }| {
             // The state of a failed step is not checked again.
             if broken.is_none() {
                 running.check()?;
             }
             Ok(running.observe())
         })?;
-        let values = seen.map_err(|failure: Failure| exceptions::of(py, &failure))?;
+        let values = seen.map_err(|failure: PhysicsFailure| exceptions::of(py, &failure))?;
         let seen = PyDict::new(py);
         for (quantity, value) in self.checked.entry.quantities.iter().zip(values) {
             seen.set_item(quantity.name, value)?;
@@ -281,7 +281,7 @@ impl Simulation {
             if forces.reach == 0.0 {
                 return vec![[0.0; 2]; particles.len()];
             }
-            net_forces(&Setting::new(prepared.domain, &particles), particles.all(), &forces)
+            net_forces(&StructureSetting::new(prepared.domain, &particles), particles.all(), &forces)
         })?;
         particles::rows(py, sums.concat(), 2)
     }

@@ -12,71 +12,71 @@ use std::sync::Arc;
 use stripmine_physics::method::observed::UnknownName;
 
 /// Column of a table.
-pub(crate) struct Column {
+pub(crate) struct TableColumn {
     name: String,
     /// Empty for pure numbers and strings.
     unit: String,
-    values: Values,
+    values: ColumnValues,
 }
 
 /// Values of a column.
-enum Values {
+enum ColumnValues {
     Counts(Vec<u64>),
     /// Missing values are NaN.
     Numbers(Vec<f64>),
     Words(Vec<String>),
 }
 
-impl Column {
+impl TableColumn {
     /// Column of whole numbers.
-    pub(crate) fn counts(name: &str, values: Vec<u64>) -> Column {
-        Column { name: name.to_owned(), unit: String::new(), values: Values::Counts(values) }
+    pub(crate) fn counts(name: &str, values: Vec<u64>) -> TableColumn {
+        TableColumn { name: name.to_owned(), unit: String::new(), values: ColumnValues::Counts(values) }
     }
 
     /// Column of numbers with a unit.
-    pub(crate) fn numbers(name: &str, unit: &str, values: Vec<f64>) -> Column {
-        Column { name: name.to_owned(), unit: unit.to_owned(), values: Values::Numbers(values) }
+    pub(crate) fn numbers(name: &str, unit: &str, values: Vec<f64>) -> TableColumn {
+        TableColumn { name: name.to_owned(), unit: unit.to_owned(), values: ColumnValues::Numbers(values) }
     }
 
     /// Column of strings.
-    pub(crate) fn words(name: &str, values: Vec<String>) -> Column {
-        Column { name: name.to_owned(), unit: String::new(), values: Values::Words(values) }
+    pub(crate) fn words(name: &str, values: Vec<String>) -> TableColumn {
+        TableColumn { name: name.to_owned(), unit: String::new(), values: ColumnValues::Words(values) }
     }
 
     fn field(&self) -> Field {
         let kind = match self.values {
-            Values::Counts(_) => DataType::UInt64,
-            Values::Numbers(_) => DataType::Float64,
-            Values::Words(_) => DataType::Utf8,
+            ColumnValues::Counts(_) => DataType::UInt64,
+            ColumnValues::Numbers(_) => DataType::Float64,
+            ColumnValues::Words(_) => DataType::Utf8,
         };
         let unit = HashMap::from([("unit".to_owned(), self.unit.clone())]);
-        Field::new(&self.name, kind, matches!(self.values, Values::Numbers(_))).with_metadata(unit)
+        Field::new(&self.name, kind, matches!(self.values, ColumnValues::Numbers(_))).with_metadata(unit)
     }
 
     fn array(&self) -> ArrayRef {
         match &self.values {
-            Values::Counts(values) => Arc::new(UInt64Array::from(values.clone())),
-            Values::Numbers(values) => {
+            ColumnValues::Counts(values) => Arc::new(UInt64Array::from(values.clone())),
+            ColumnValues::Numbers(values) => {
                 let is_there = |value: &f64| (!value.is_nan()).then_some(*value);
                 Arc::new(values.iter().map(is_there).collect::<Float64Array>())
             }
-            Values::Words(values) => Arc::new(StringArray::from_iter_values(values)),
+            ColumnValues::Words(values) => Arc::new(StringArray::from_iter_values(values)),
         }
     }
 
     fn to_numpy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(match &self.values {
-            Values::Counts(values) => PyArray1::from_slice(py, values).into_any(),
-            Values::Numbers(values) => PyArray1::from_slice(py, values).into_any(),
-            Values::Words(values) => py.import("numpy")?.call_method1("array", (values, "str"))?,
+            ColumnValues::Counts(values) => PyArray1::from_slice(py, values).into_any(),
+            ColumnValues::Numbers(values) => PyArray1::from_slice(py, values).into_any(),
+            ColumnValues::Words(values) => py.import("numpy")?.call_method1("array", (values, "str"))?,
         })
     }
 
     fn len(&self) -> usize {
         match &self.values {
-            Values::Counts(values) => values.len(),
-            Values::Numbers(values) => values.len(),
-            Values::Words(values) => values.len(),
+            ColumnValues::Counts(values) => values.len(),
+            ColumnValues::Numbers(values) => values.len(),
+            ColumnValues::Words(values) => values.len(),
         }
     }
 }
@@ -89,11 +89,11 @@ pub(crate) fn _table(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -
             |values: Vec<Option<f64>>| values.into_iter().map(|it| it.unwrap_or(f64::NAN)).collect();
         let words = |values: Vec<Option<String>>| values.into_iter().map(Option::unwrap_or_default).collect();
         let values = match kind.as_str() {
-            "counts" => Values::Counts(values.extract()?),
-            "numbers" => Values::Numbers(numbers(values.extract()?)),
-            _ => Values::Words(words(values.extract()?)),
+            "counts" => ColumnValues::Counts(values.extract()?),
+            "numbers" => ColumnValues::Numbers(numbers(values.extract()?)),
+            _ => ColumnValues::Words(words(values.extract()?)),
         };
-        Ok(Column { name, unit, values })
+        Ok(TableColumn { name, unit, values })
     });
     Ok(Table::new(columns.collect::<PyResult<_>>()?))
 }
@@ -101,18 +101,18 @@ pub(crate) fn _table(columns: Vec<(String, String, String, Bound<'_, PyAny>)>) -
 /// Table: `table["name"]` is a column; pandas, polars and pyarrow read the whole table.
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Table {
-    columns: Vec<Column>,
+    columns: Vec<TableColumn>,
 }
 
 impl Table {
     /// Table of columns of equal length.
-    pub(crate) fn new(columns: Vec<Column>) -> Table {
+    pub(crate) fn new(columns: Vec<TableColumn>) -> Table {
         Table { columns }
     }
 
     fn batch(&self) -> Result<RecordBatch, ArrowError> {
-        let fields: Vec<Field> = self.columns.iter().map(Column::field).collect();
-        let arrays = self.columns.iter().map(Column::array).collect();
+        let fields: Vec<Field> = self.columns.iter().map(TableColumn::field).collect();
+        let arrays = self.columns.iter().map(TableColumn::array).collect();
         RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
     }
 }
@@ -164,7 +164,7 @@ impl Table {
     }
 
     fn __len__(&self) -> usize {
-        self.columns.first().map_or(0, Column::len)
+        self.columns.first().map_or(0, TableColumn::len)
     }
 
     fn __repr__(&self) -> String {

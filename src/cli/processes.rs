@@ -66,7 +66,7 @@ const PROCESSES: FailureKind = FailureKind::new("processes");
 /// Session of messages between ranks, open until the program ends.
 pub(super) struct ProcessSession {
     #[cfg(feature = "mpi")]
-    _session: Option<stripmine_physics::ranks::mpi::Session>,
+    _session: Option<stripmine_physics::ranks::mpi::MpiSession>,
     crew: RankBackend,
 }
 
@@ -85,7 +85,10 @@ impl ProcessSession {
         };
         #[cfg(feature = "mpi")]
         return Ok(ProcessSession {
-            _session: joining::with_timeouts(stripmine_physics::ranks::mpi::Session::begin, waiting(place)),
+            _session: joining::with_timeouts(
+                stripmine_physics::ranks::mpi::MpiSession::begin,
+                waiting(place),
+            ),
             crew: RankBackend::Processes(stripmine_physics::ranks::mpi::world),
         });
         #[cfg(not(feature = "mpi"))]

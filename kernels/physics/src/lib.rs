@@ -8,7 +8,7 @@
 //! | read a scene, with changes of its keys | [`method::load`] |
 //! | start it, advance it, observe it | [`method::Prepared`], [`method::Simulation`] |
 //! | record it in a folder; resume it | [`run::run`] |
-//! | read what runs wrote: averages, structure, particles | [`run::Finished`], [`run::function_of`], [`io::extxyz`], [`io::checkpoint`] |
+//! | read what runs wrote: averages, structure, particles | [`run::FinishedRun`], [`run::function_of`], [`io::extxyz`], [`io::checkpoint`] |
 //! | averages with their errors | [`averages`] |
 //! | structure of given particles | [`structure`] |
 //! | a run on several ranks | [`ranks`] |
@@ -18,10 +18,10 @@
 //! ```
 //! use std::sync::atomic::AtomicBool;
 //! use stripmine_physics::method::observed::observed;
-//! use stripmine_physics::method::{METHODS, Purpose, load};
+//! use stripmine_physics::method::{METHODS, StartPurpose, load};
 //!
 //! let (prepared, method) = load("two-discs", &["run.steps=100".to_owned()], METHODS)?;
-//! let mut simulation = prepared.start(Purpose::Run)?;
+//! let mut simulation = prepared.start(StartPurpose::Run)?;
 //! simulation.advance(&[prepared.schedule.until], &AtomicBool::new(false))?;
 //! let [momentum] = observed(method.quantities, &simulation.observe(), ["momentum_x"])?;
 //! assert!((momentum - 1.0).abs() < 1e-12);
@@ -34,7 +34,7 @@
 //! use std::sync::atomic::AtomicBool;
 //! use stripmine_physics::method::{METHODS, load};
 //! use stripmine_physics::origin::Origin;
-//! use stripmine_physics::run::{Existing, Finished, Job, averages_of, run};
+//! use stripmine_physics::run::{ExistingRun, FinishedRun, RunJob, averages_of, run};
 //!
 //! let changes = ["run.steps=200".to_owned(), "run.thermo_every=10".to_owned()];
 //! let (prepared, method) = load("two-discs", &changes, METHODS)?;
@@ -45,10 +45,10 @@
 //!     dirty: false,
 //!     target: "any".to_owned(),
 //! };
-//! let job = Job { prepared: &prepared, quantities: method.quantities, program: &program };
-//! run(job, &folder, Existing::Overwrite, &AtomicBool::new(false), |_, _| (), |_| ())?;
+//! let job = RunJob { prepared: &prepared, quantities: method.quantities, program: &program };
+//! run(job, &folder, ExistingRun::Overwrite, &AtomicBool::new(false), |_, _| (), |_| ())?;
 //!
-//! let averages = averages_of(&[Finished::read(&folder, METHODS)?])?;
+//! let averages = averages_of(&[FinishedRun::read(&folder, METHODS)?])?;
 //! assert_eq!((averages.rows, averages.runs), (21, 1));
 //! assert!(averages.quantities.iter().any(|it| it.quantity == "momentum_x"));
 //! # std::fs::remove_dir_all(&folder)?;
@@ -60,12 +60,12 @@
 //! ```
 //! use std::f64::consts::TAU;
 //! use stripmine_physics::domain::Domain;
-//! use stripmine_physics::particles::{Kind, Particle, Particles, in_space};
-//! use stripmine_physics::structure::{Setting, hexatic_orders};
+//! use stripmine_physics::particles::{ParticleKind, Particle, Particles, in_space};
+//! use stripmine_physics::structure::{StructureSetting, hexatic_orders};
 //!
 //! let disc = |id, [x, y]: [f64; 2]| Particle {
 //!     id,
-//!     kind: Kind::Grain,
+//!     kind: ParticleKind::Grain,
 //!     position: in_space([5.0 + x, 4.0 + y]),
 //!     velocity: [0.0; 3],
 //!     angle: 0.0,
@@ -76,7 +76,7 @@
 //! let corner = |id: u32| disc(id, [(f64::from(id) / 6.0 * TAU).cos(), (f64::from(id) / 6.0 * TAU).sin()]);
 //! let discs = Particles::new((1..=6).map(corner).chain([disc(7, [0.0; 2])]).collect());
 //!
-//! let setting = Setting::new(Domain::planar([0.0; 2], [10.0, 8.0], [false; 2]), &discs);
+//! let setting = StructureSetting::new(Domain::planar([0.0; 2], [10.0, 8.0], [false; 2]), &discs);
 //! let [real, imaginary] = hexatic_orders(&setting, &discs)[6];
 //! assert!((real - 1.0).abs() < 1e-12 && imaginary.abs() < 1e-12);
 //! ```

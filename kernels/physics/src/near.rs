@@ -43,7 +43,7 @@ struct SquareMember {
 }
 
 impl NeighbourSearch {
-    /// Memory of [`NeighbourSearch::among`] for a number of positions (bytes): the members, and the table of squares. The table has a power of two of entries
+    /// Memory of [`NeighbourSearch::over_positions`] for a number of positions (bytes): the members, and the table of squares. The table has a power of two of entries
     /// and keeps an eighth of them empty.
     pub fn bytes(positions: usize) -> usize {
         let entries = (8 * positions / 7 + 1).next_power_of_two();

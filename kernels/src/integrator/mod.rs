@@ -14,7 +14,7 @@ pub const DERIVATIVES: usize = 6;
 const VELOCITY: [Array; 3] = [Array::DiscVx, Array::DiscVy, Array::DiscOmega];
 pub(crate) const FORCE: [Array; 3] = [Array::Fx, Array::Fy, Array::Torque];
 
-/// Counts discs whose new state is not finite. Written by kernels that are [`checked`](gear::Corrector::checked).
+/// Counts discs whose new state is not finite. Written by kernels that are [`checked`](gear::GearCorrector::checked).
 pub const NOT_FINITE: LaneCounter = LaneCounter(3);
 
 /// Divisor of the forces.

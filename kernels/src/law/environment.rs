@@ -79,19 +79,19 @@ pub trait Env<const DIM: usize>: Copy {
 /// A pair law in `DIM` dimensions.
 ///
 /// It states the quantities it reads and the sums it adds to. A sweep provides these and no more. A law that omits a field or a
-/// sum is rejected ([`check`](super::check)) and cannot reach what it does not state ([`StatedEnv`](super::Stated)). A law that
+/// sum is rejected ([`check`](super::check)) and cannot reach what it does not state ([`StatedEnv`](super::StatedEnv)). A law that
 /// states a quantity its dimensions lack does not compile where it is used:
 ///
 /// ```compile_fail
-/// use stripmine_kernels::law::{Axis, Env, Field, Law, Sum, check};
+/// use stripmine_kernels::law::{Axis, Env, ParticleField, Law, ParticleSum, check};
 ///
 /// #[derive(Clone)]
 /// struct Lifting;
 ///
 /// impl Law<2> for Lifting {
 ///     type Own<V: Copy> = ();
-///     const FIELDS: &'static [Field] = &[];
-///     const SUMS: &'static [Sum] = &[Sum::Force(Axis::Z)];
+///     const FIELDS: &'static [ParticleField] = &[];
+///     const SUMS: &'static [ParticleSum] = &[ParticleSum::Force(Axis::Z)];
 ///     fn own<E: Env<2>>(&self, _: E) {}
 ///     fn pair<E: Env<2>>(&self, _: E, _: E::Place, _: &()) {}
 /// }

@@ -43,10 +43,10 @@ use crate::isa::Vector;
 /// ```
 /// # use stripmine_kernels::law::lennard_jones::LennardJones;
 /// # use stripmine_kernels::law::potential::{CutOff, PairPotential};
-/// use stripmine_kernels::sweep::pair::{Body, Pair};
+/// use stripmine_kernels::sweep::pair::{PairBody, Pair};
 ///
 /// let law = CutOff::new(LennardJones::new(1.0, 1.0), 2.5);
-/// let pair = Pair { bodies: [Body::at(1.0, 0.0), Body::at(0.0, 0.0)] };
+/// let pair = Pair { bodies: [PairBody::at(1.0, 0.0), PairBody::at(0.0, 0.0)] };
 /// assert_eq!(pair.sums(&law), [[24.0, 0.0, 0.0], [-24.0, 0.0, 0.0]]);
 /// assert!((law.potential().closest(48.0) - 2f64.powf(-1.0 / 3.0)).abs() < 1e-15);
 /// ```

@@ -41,11 +41,11 @@ use crate::isa::Vector;
 /// ```
 /// # use stripmine_kernels::law::potential::{CutOff, PairPotential};
 /// # use stripmine_kernels::law::yukawa::Yukawa;
-/// use stripmine_kernels::sweep::pair::{Body, Pair};
+/// use stripmine_kernels::sweep::pair::{PairBody, Pair};
 ///
 /// let law = CutOff::new(Yukawa::new(1.0, 1.0, 5.0), 4.2);
 /// for distance in [0.2, 1.0, 2.0, 4.1] {
-///     let pair = Pair { bodies: [Body::at(distance, 0.0), Body::at(0.0, 0.0)] };
+///     let pair = Pair { bodies: [PairBody::at(distance, 0.0), PairBody::at(0.0, 0.0)] };
 ///     let [[force, ..], _] = pair.sums(&law);
 ///     assert!((force / law.potential().force(distance) - 1.0).abs() < 5e-14);
 /// }

@@ -1,5 +1,5 @@
 //! Kernels that BP93 has no equation for: wrapping of positions in a periodic box, discs outside, images in the halo. The
-//! [`CheckIndex`](crate::sweep::lattice::cells::Check) of every lattice finds lost discs.
+//! [`CheckIndex`](crate::sweep::lattice::cells::CheckIndex) of every lattice finds lost discs.
 
 use super::index::INDEX;
 use crate::isa::{Array, Element, Kernel, Machine, Predicate, Slot, Vector};

@@ -192,8 +192,8 @@ mod tests {
         }
     }
 
-    /// By hand, for a variance of 1 and an error bar of two standard errors: rows Δ apart of values that keep a part m in a unit of time have 4 Δ (1
-    /// + m^Δ)/(1 − m^Δ). With m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every
+    /// By hand, for a variance of 1 and an error bar of two standard errors: rows Δ apart of values that keep a part m in a unit of time have
+    /// 4 Δ (1 + m^Δ)/(1 − m^Δ). With m = 0.9 that is 76 for every value and 79 for every eighth: the eighth is enough. With m = 0 it is 4 and 32: every
     /// value counts, unless a row costs as much as eight units of time.
     #[test]
     fn row_spacing_minimises_cost() {

@@ -64,7 +64,7 @@ pub trait Simulation: Send {
         Ok(())
     }
 
-    /// Value of each of the method's quantities. Interval means cover the time since the last [`wall_row`](Self::wall_row), or since the start.
+    /// Value of each of the method's quantities. Interval means cover the time since the last [`row`](Self::row), or since the start.
     fn observe(&self) -> Vec<f64>;
 
     /// Values of [`observe`](Self::observe) as a row: the next interval begins here.

@@ -17,21 +17,21 @@ const DOWN: i32 = 1;
 const UP: i32 = 2;
 const MIGRATING: i32 = 3;
 const GATHERED: i32 = 4;
-const TOLD: i32 = 5;
+const BROADCASTING: i32 = 5;
 /// Size of a piece of a message (bytes): MPI counts with 31 bits.
 const PIECE: usize = 1 << 30;
 /// Number of polls for a message before the process yields its core, and before it sleeps.
-const LOOKS: u32 = 2000;
-const LOOKS_AWAKE: u32 = 200_000;
+const POLLS_BUSY: u32 = 2000;
+const POLLS_YIELDING: u32 = 200_000;
 const MOMENT: Duration = Duration::from_millis(1);
 
 /// Handle of MPI's environment; no message is sent after it is dropped.
-pub struct Session(Universe);
+pub struct MpiSession(Universe);
 
-impl Session {
+impl MpiSession {
     /// Joins the processes started by `mpiexec`; none if that was done already.
-    pub fn begin() -> Option<Session> {
-        mpi::initialize().map(Session)
+    pub fn begin() -> Option<MpiSession> {
+        mpi::initialize().map(MpiSession)
     }
 
     /// Number of processes.
@@ -42,34 +42,34 @@ impl Session {
 
 /// Ends all processes at once, with an exit code.
 pub fn abort(code: u8) -> ! {
-    World::all().abort(code.into())
+    MpiRank::all().abort(code.into())
 }
 
 /// Rank of this process among all.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct World;
+pub(crate) struct MpiRank;
 
-/// Rank of this process, as a [`RankBackend`](super::Crew) needs it.
+/// Rank of this process, as a [`RankBackend`](super::RankBackend) needs it.
 pub fn world() -> Box<dyn Ranks> {
-    Box::new(World)
+    Box::new(MpiRank)
 }
 
-impl World {
+impl MpiRank {
     fn all() -> SimpleCommunicator {
         SimpleCommunicator::world()
     }
 
     /// Sends a message, and returns once the parcel may be dropped.
     fn send(to: usize, parcel: &Parcel, tag: i32) {
-        let all = World::all();
+        let all = MpiRank::all();
         pieces(parcel).for_each(|piece| all.process_at_rank(to as i32).send_with_tag(piece, tag));
     }
 
     fn receive(from: usize, tag: i32) -> Parcel {
-        let mut bytes = World::receive_piece(from, tag);
+        let mut bytes = MpiRank::receive_piece(from, tag);
         let mut last = bytes.len();
         while last == PIECE {
-            let piece = World::receive_piece(from, tag);
+            let piece = MpiRank::receive_piece(from, tag);
             last = piece.len();
             bytes.extend(piece);
         }
@@ -77,7 +77,7 @@ impl World {
     }
 
     fn receive_piece(from: usize, tag: i32) -> Vec<u8> {
-        let (all, mut looks) = (World::all(), 0_u32);
+        let (all, mut looks) = (MpiRank::all(), 0_u32);
         let from = all.process_at_rank(from as i32);
         loop {
             if let Some(there) = from.immediate_matched_probe_with_tag(tag) {
@@ -86,8 +86,8 @@ impl World {
             looks = looks.saturating_add(1);
             // Other ranks need this core if there are more ranks than cores; MPI's own waiting would keep it.
             match looks {
-                ..=LOOKS => {}
-                ..=LOOKS_AWAKE => thread::yield_now(),
+                ..=POLLS_BUSY => {}
+                ..=POLLS_YIELDING => thread::yield_now(),
                 _ => thread::sleep(MOMENT),
             }
         }
@@ -99,17 +99,17 @@ fn pieces(Parcel(bytes): &Parcel) -> impl Iterator<Item = &[u8]> {
     (0..=bytes.len() / PIECE).map(|piece| &bytes[piece * PIECE..bytes.len().min((piece + 1) * PIECE)])
 }
 
-impl Ranks for World {
+impl Ranks for MpiRank {
     fn rank(&self) -> usize {
-        World::all().rank() as usize
+        MpiRank::all().rank() as usize
     }
 
     fn count(&self) -> usize {
-        World::all().size() as usize
+        MpiRank::all().size() as usize
     }
 
     fn halo(&self, [down, up]: [Parcel; 2], meanwhile: &mut dyn FnMut()) -> Result<[Parcel; 2], RankError> {
-        let (all, [below, above]) = (World::all(), self.neighbours());
+        let (all, [below, above]) = (MpiRank::all(), self.neighbours());
         let [to_below, to_above] = [below, above].map(|rank| all.process_at_rank(rank as i32));
         Ok(scope(|scope| {
             let down = pieces(&down).map(|piece| (to_below, piece, DOWN));
@@ -119,12 +119,12 @@ impl Ranks for World {
                 .map(|(to, piece, tag)| WaitGuard::from(to.immediate_send_with_tag(scope, piece, tag)));
             let _sent: Vec<_> = sent.collect();
             meanwhile();
-            [World::receive(below, UP), World::receive(above, DOWN)]
+            [MpiRank::receive(below, UP), MpiRank::receive(above, DOWN)]
         }))
     }
 
     fn migrate(&self, mut to: Vec<Parcel>) -> Result<Vec<Parcel>, RankError> {
-        let (all, rank) = (World::all(), self.rank());
+        let (all, rank) = (MpiRank::all(), self.rank());
         let own = std::mem::take(&mut to[rank]);
         Ok(scope(|scope| {
             let others = to.iter().enumerate().filter(|(other, _)| *other != rank);
@@ -135,7 +135,7 @@ impl Ranks for World {
             });
             let _sent: Vec<_> = sent.collect();
             let from = (0..to.len())
-                .map(|other| if other == rank { own.clone() } else { World::receive(other, MIGRATING) });
+                .map(|other| if other == rank { own.clone() } else { MpiRank::receive(other, MIGRATING) });
             from.collect()
         }))
     }
@@ -147,12 +147,12 @@ impl Ranks for World {
         let mut apart = 1;
         while apart < count {
             if rank % (2 * apart) == apart {
-                World::send(rank - apart, &Parcel::of(&parcels), GATHERED);
+                MpiRank::send(rank - apart, &Parcel::of(&parcels), GATHERED);
                 return Ok(vec![]);
             }
             let next = rank + apart;
             if next < count {
-                let packed = World::receive(next, GATHERED).open::<Vec<Parcel>>(next);
+                let packed = MpiRank::receive(next, GATHERED).open::<Vec<Parcel>>(next);
                 // Every loss is reported to the first rank.
                 let lost = |lost| vec![Parcel::lost(lost); apart.min(count - next)];
                 parcels.extend(packed.unwrap_or_else(lost));
@@ -162,7 +162,7 @@ impl Ranks for World {
         Ok(parcels)
     }
 
-    fn tell(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
+    fn broadcast(&self, said: Option<Parcel>) -> Result<Parcel, RankError> {
         // Broadcasts along a binary tree: each rank that has the message sends it half-way to the next rank that has it.
         let (rank, count) = (self.rank(), self.count());
         let mut apart = count.next_power_of_two();
@@ -171,9 +171,9 @@ impl Ranks for World {
             let half = apart / 2;
             match &known {
                 Some(parcel) if rank % apart == 0 && rank + half < count => {
-                    World::send(rank + half, parcel, TOLD);
+                    MpiRank::send(rank + half, parcel, BROADCASTING);
                 }
-                None if rank % apart == half => known = Some(World::receive(rank - half, TOLD)),
+                None if rank % apart == half => known = Some(MpiRank::receive(rank - half, BROADCASTING)),
                 _ => {}
             }
             apart = half;

@@ -1,7 +1,7 @@
 //! Scene files: TOML descriptions of a simulation.
 //!
 //! A method states the keys of its scenes ([`Vocabulary`]). Each key has a name, type, range, unit, default and documentation ([`Key`]). Reading a
-//! text reports all mistakes at once, each with its location ([`Values`], [`SceneErrors`]). One function for each section binds its fields to its
+//! text reports all mistakes at once, each with its location ([`SceneValues`], [`SceneErrors`]). One function for each section binds its fields to its
 //! keys, both for reading and for writing ([`Binding`]). This module names no method: it contains the keys that several of them share.
 
 mod binding;

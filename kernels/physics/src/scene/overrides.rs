@@ -6,16 +6,16 @@ use serde::{Serialize, Serializer};
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// Overrides of a scene by their keys, so that an unknown key does not compile. [`Values::with`](super::Values::with) applies them;
+/// Overrides of a scene by their keys, so that an unknown key does not compile. [`SceneValues::with`](super::SceneValues::with) applies them;
 /// [`texts`](Overrides::texts) formats them for a command line.
 ///
 /// ```
 /// use stripmine_physics::method::{METHODS, prepare, vocabularies};
-/// use stripmine_physics::scene::{COUNT, DT, Overrides, Values};
+/// use stripmine_physics::scene::{COUNT, DT, Overrides, SceneValues};
 ///
 /// let overrides = Overrides::new().set(&COUNT, 100_u64).set(&DT, 5e-5);
 /// assert_eq!(overrides.texts(), ["particles.count=100", "integrator.dt=5e-5"]);
-/// let values = Values::load("dense-gas", &[], &vocabularies(METHODS))?;
+/// let values = SceneValues::load("dense-gas", &[], &vocabularies(METHODS))?;
 /// let (prepared, _) = prepare(values.with(&overrides)?, METHODS)?;
 /// assert_eq!(prepared.particles().len(), 100);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

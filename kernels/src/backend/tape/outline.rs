@@ -85,7 +85,7 @@ pub struct Outlines {
     pub instructions: Vec<Outline>,
     /// Passes that execute them here: loads become operands of their readers if the array keeps its contents.
     pub passes: Vec<Outline>,
-    /// Registers of each file that the passes need at once, in the order of [`File::ALL`].
+    /// Registers of each file that the passes need at once, in the order of [`RegisterKind::ALL`].
     pub registers: [usize; RegisterKind::ALL.len()],
 }
 
@@ -101,7 +101,7 @@ impl<L: Element> Tape<L> {
     }
 }
 
-/// Bytes per element in a register of each file, in the order of [`File::ALL`], and the lanes of a hardware register.
+/// Bytes per element in a register of each file, in the order of [`RegisterKind::ALL`], and the lanes of a hardware register.
 ///
 /// # Errors
 /// [`ProgramError::NoSuchInstructionSet`] if this processor lacks it.

@@ -58,8 +58,8 @@ pub enum Arithmetic {
     Raw,
 }
 
-/// Columns of the bodies, each of [`padded`] length. Entries behind the last body have no mass; padding entry n has the x
-/// coordinate [`padding`] of n.
+/// Columns of the bodies, each of [`padded_length`] length. Entries behind the last body have no mass; padding entry n has the x
+/// coordinate [`padding_position`] of n.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyColumns<'a, P> {
     /// Positions (length).
@@ -148,7 +148,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     /// zeros.
     ///
     /// # Errors
-    /// [`ProgramError`] if the length of a column is not [`padded`], the law reads a quantity it does not state, the processor
+    /// [`ProgramError`] if the length of a column is not [`padded_length`], the law reads a quantity it does not state, the processor
     /// lacks the instruction set, or the sweep is interrupted.
     pub fn sweep<L: Law<3> + Sync>(
         &mut self,
@@ -251,7 +251,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
     /// Adds up the sums of all bands.
     ///
     /// # Errors
-    /// [`ProgramError`] if the length of a sum is not [`padded`].
+    /// [`ProgramError`] if the length of a sum is not [`padded_length`].
     pub fn finish(&self, sums: [&mut [P]; SUMS]) -> Result<[f64; 2], ProgramError> {
         let entries = self.groups * GROUP;
         sums.iter().try_for_each(|sums| check_length(sums.len(), entries))?;

@@ -84,7 +84,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     fn rows(&self) -> RowLayout;
 
     /// Replaces the contents of `found` by the pairs from `cursor` on in `rows`: some hundred, or all that remain. Advances the
-    /// cursor, to the end of the rows when no pair is left. Partners are in these rows and those [`ahead`](Rows::ahead) of them.
+    /// cursor, to the end of the rows when no pair is left. Partners are in these rows and those [`ahead`](RowLayout::ahead) of them.
     ///
     /// # Errors
     /// [`ProgramError::NoSuchInstructionSet`].

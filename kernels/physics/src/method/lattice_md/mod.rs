@@ -4,9 +4,9 @@
 //! Step discs one by one:
 //!
 //! ```
-//! use stripmine_physics::method::lattice_md::{Document, assemble};
+//! use stripmine_physics::method::lattice_md::{GranularDocument, assemble};
 //!
-//! let checked = Document::load("two-discs", &["machine.engine=programs".to_owned()])?.check()?;
+//! let checked = GranularDocument::load("two-discs", &["machine.engine=programs".to_owned()])?.check()?;
 //! let mut grains = assemble(&checked)?;
 //! grains.step()?;
 //! assert_eq!(grains.particles().len(), 2);

@@ -7,8 +7,8 @@ use crate::method::{Culprit, PhysicsFailure};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::over_pieces;
+use stripmine_kernels::sweep::fast::CellGrid;
 use stripmine_kernels::sweep::fast::lattice::CellTaken;
-use stripmine_kernels::sweep::fast::{CellGrid, DisplacementLimit};
 
 /// Result of a search for cells: changes of cells, and discs that belong to no cell.
 #[derive(Default)]
@@ -132,7 +132,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.state.moving()..self.state.grains()
     }
 
-    /// True if a pass would leave the disc in its cell. The comparison is that of [`DisplacementLimit::Cell`], to the bit: a disc on the rim must be
+    /// True if a pass would leave the disc in its cell. The comparison is that of `DisplacementLimit::Cell`, to the bit: a disc on the rim must be
     /// in one cell on all ranks.
     fn stays_in_cell(&self, disc: usize) -> bool {
         let (place, edge) = (self.state.place(disc), self.search.cells().grid().frame.edge);
