@@ -1,10 +1,8 @@
 //! Statistics over several runs.
 
 use serde::Serialize;
-use std::fmt;
-use stripmine_physics::averages::mean_of_correlated;
+pub use stripmine_physics::averages::MeanWithBar;
 pub(crate) use stripmine_physics::averages::student;
-use stripmine_physics::number::with_error_bar;
 
 /// Mean and range of a quantity over independent runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,45 +32,6 @@ impl RunSpread {
             highest: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             runs: values.len(),
         }
-    }
-}
-
-/// A mean with half the width of its 95 % confidence interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct MeanWithBar {
-    /// The mean.
-    pub value: f64,
-    /// Half the width of the interval (the error bar).
-    pub bar: f64,
-}
-
-impl fmt::Display for MeanWithBar {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&with_error_bar(self.value, self.bar))
-    }
-}
-
-impl MeanWithBar {
-    /// Mean of at least one independent value; the error bar of a single one is infinite.
-    pub fn of(values: &[f64]) -> MeanWithBar {
-        let RunSpread { mean, error, runs, .. } = RunSpread::of(values);
-        MeanWithBar { value: mean, bar: error.map_or(f64::INFINITY, |error| student(0.95, runs - 1) * error) }
-    }
-
-    /// Mean of a time series of at least one value, which may be correlated.
-    pub(crate) fn of_time_series(values: &[f64]) -> MeanWithBar {
-        mean_of_correlated(values)
-            .map_or_else(|| MeanWithBar::of(values), |[value, bar]| MeanWithBar { value, bar })
-    }
-
-    /// Relative deviation from a known value.
-    pub(crate) fn relative_to(self, known: f64) -> MeanWithBar {
-        MeanWithBar { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
-    }
-
-    /// Converts to percent.
-    pub(crate) fn percent(self) -> MeanWithBar {
-        MeanWithBar { value: 100.0 * self.value, bar: 100.0 * self.bar }
     }
 }
 

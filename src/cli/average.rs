@@ -99,10 +99,10 @@ fn function_table(function: &StructureFunction, units: &UnitSystem) -> Formatted
             TableCell::Number(point.over[at], decimals(point.over[at], 4))
         });
     }
-    rows.cell(with_unit(function.observable.value), |FunctionPoint { mean, bar, .. }| {
-        TableCell::Number(*mean, decimals_of_mean(*mean, *bar))
+    rows.cell(with_unit(function.observable.value), |FunctionPoint { mean, .. }| {
+        TableCell::Number(mean.value, decimals_of_mean(mean.value, mean.bar))
     })
-    .cell("± 95 %", |point| TableCell::Number(point.bar, decimals(point.bar, 2)))
+    .cell("± 95 %", |point| TableCell::Number(point.mean.bar, decimals(point.mean.bar, 2)))
     .table("structure", format!("{} of {}", function.name, count_with_noun(function.runs, "run", "runs")))
 }
 
@@ -116,8 +116,8 @@ fn structure_table(functions: &[StructureFunction], units: &UnitSystem) -> Forma
     FrameBuilder::of(&headlines)
         .text("structure", |(name, _)| *name)
         .text("number", |(_, number)| number.name)
-        .cell("mean", |(_, number)| TableCell::Number(number.mean, decimals_of_mean(number.mean, number.bar)))
-        .cell("± 95 %", |(_, number)| TableCell::Number(number.bar, decimals(number.bar, 2)))
+        .cell("mean", |(_, number)| TableCell::Number(number.mean.value, decimals_of_mean(number.mean.value, number.mean.bar)))
+        .cell("± 95 %", |(_, number)| TableCell::Number(number.mean.bar, decimals(number.mean.bar, 2)))
         .text("unit", |(_, number)| units.symbol(number.unit))
         .table("structure", "Structure".to_owned())
         .note(format!(

@@ -4,6 +4,7 @@ use crate::cli::display::UnitSystem;
 use crate::console::warn;
 use crate::report::figure::{Chart, ChartAxis, Figure, HeatMap, Picture, Series, Style};
 use std::path::Path;
+use stripmine_physics::averages::MeanWithBar;
 use stripmine_physics::run::{FinishedError, FunctionPoint, StructureFunction, functions_of};
 use stripmine_physics::structure::{FunctionArguments, SamplingKind, StructureObservable};
 
@@ -73,8 +74,9 @@ fn series(
     of: impl Fn(&FunctionPoint) -> Option<f64>,
 ) -> Series {
     let point = |point: &FunctionPoint| {
-        let bar = if point.bar.is_nan() { 0.0 } else { point.bar };
-        Some((of(point)?, point.mean, [point.mean - bar, point.mean + bar]))
+        let MeanWithBar { value, bar } = point.mean;
+        let bar = if bar.is_nan() { 0.0 } else { bar };
+        Some((of(point)?, value, [value - bar, value + bar]))
     };
     Series::new(name, Style::Joined, hue, function.points.iter().filter_map(point).collect::<Vec<_>>())
 }
@@ -96,6 +98,6 @@ fn map(function: &StructureFunction, [x, y, value]: [ChartAxis; 3]) -> Option<Pi
         x: x.between(ends(0, 1)),
         y: y.between(ends(1, columns)),
         value,
-        rows: points.chunks(columns).map(|row| row.iter().map(|point| point.mean).collect()).collect(),
+        rows: points.chunks(columns).map(|row| row.iter().map(|point| point.mean.value).collect()).collect(),
     }))
 }

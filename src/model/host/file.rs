@@ -96,6 +96,9 @@ const HEADING: &str = "\
 /// Significant digits of a number in the file.
 const DIGITS: i32 = 4;
 
+/// Lists that must rise: rounded, two of their numbers might be equal.
+const ABSCISSAS: [&str; 2] = ["footprints", "discs"];
+
 /// Rounds numbers to the digits that a person reads.
 fn round_numbers(value: &mut toml::Value) {
     match value {
@@ -105,7 +108,10 @@ fn round_numbers(value: &mut toml::Value) {
             *number = text.parse().unwrap_or(*number);
         }
         toml::Value::Array(items) => items.iter_mut().for_each(round_numbers),
-        toml::Value::Table(table) => table.iter_mut().for_each(|(_, value)| round_numbers(value)),
+        toml::Value::Table(table) => {
+            let rounded = table.iter_mut().filter(|(name, _)| !ABSCISSAS.contains(&name.as_str()));
+            rounded.for_each(|(_, value)| round_numbers(value));
+        }
         _ => {}
     }
 }
@@ -126,6 +132,15 @@ mod tests {
     fn shipped_model_round_trips() {
         let model = default_model().unwrap();
         assert_eq!(HostModel::parse("again", &model.to_toml().unwrap()).unwrap(), model);
+    }
+
+    /// Numbers of discs that differ in the sixth digit only.
+    #[test]
+    fn rising_lists_are_written_exactly() {
+        let mut model = default_model().unwrap();
+        model.discs[1] = model.discs[0] * 1.000001;
+        let again = HostModel::parse("again.toml", &model.to_toml().unwrap()).unwrap();
+        assert_eq!(again.discs, model.discs);
     }
 
     #[test]

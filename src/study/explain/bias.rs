@@ -85,7 +85,7 @@ impl StepDifference {
             step,
             reference,
             shown: shown.iter().sum::<f64>() / shown.len() as f64,
-            difference: mean_of_independent(&told).unwrap_or([f64::NAN, f64::INFINITY]),
+            difference: mean_of_independent(&told).map_or([f64::NAN, f64::INFINITY], Into::into),
         }
     }
 }

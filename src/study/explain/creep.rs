@@ -84,7 +84,7 @@ fn drift(balance: &BalanceIndices, rows: &[Vec<f64>]) -> Option<[f64; 2]> {
     let (early, late) = stretches.split_at(STRETCHES);
     let rates: Vec<f64> = early.iter().zip(late).map(|(a, b)| (b[1] - a[1]) / (b[0] - a[0])).collect();
     let energies = balance.energies(rows.last()?);
-    mean_of_independent(&rates).map(|both| both.map(|value| value / energies))
+    mean_of_independent(&rates).map(|it| <[f64; 2]>::from(it).map(|value| value / energies))
 }
 
 #[cfg(test)]

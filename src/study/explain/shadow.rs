@@ -49,5 +49,5 @@ fn covariance(values: &[f64], others: &[f64]) -> Option<[f64; 2]> {
         let products = values.iter().zip(others).map(|(a, b)| (a - value) * (b - other)).sum::<f64>();
         products / (length - 1) as f64
     });
-    mean_of_independent(&stretches.collect::<Vec<_>>())
+    mean_of_independent(&stretches.collect::<Vec<_>>()).map(Into::into)
 }

@@ -2,7 +2,7 @@
 
 use super::any_number;
 use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::{Estimate, mean_of_independent, predictive_half_width};
+use stripmine_physics::averages::{Estimate, MeanWithBar, mean_of_independent, predictive_half_width};
 
 /// Fewest rows of a run of known time.
 pub(crate) const ROWS: f64 = 250.0;
@@ -76,7 +76,7 @@ impl MeanEstimate {
     /// Estimates the mean from the means of whole runs of a time (time); none from fewer than two.
     pub(crate) fn of_whole_runs(means: &[f64], time: f64) -> Option<MeanEstimate> {
         let count = means.len() as f64;
-        let [mean, bar] = mean_of_independent(means)?;
+        let MeanWithBar { value, bar } = mean_of_independent(means)?;
         let (span, waves) = (count * time, count - 1.0);
         Some(MeanEstimate {
             bar,
@@ -84,7 +84,7 @@ impl MeanEstimate {
             span,
             waves,
             freedoms: waves,
-            ..MeanEstimate::exactly(mean)
+            ..MeanEstimate::exactly(value)
         })
     }
 

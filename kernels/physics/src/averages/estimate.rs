@@ -3,7 +3,9 @@
 use super::equilibration::{batches, transient_length};
 use super::student::student;
 use super::waves::{WaveError, is_smooth_drift, mean};
+use crate::number::with_error_bar;
 use serde::Serialize;
+use std::fmt;
 
 /// Smallest number of independent samples for a mean: with fewer, neither the cut nor the error is reliable.
 pub(crate) const FEWEST_SAMPLES: f64 = 20.0;
@@ -23,7 +25,59 @@ const ROUNDING: f64 = 1e-9;
 /// Number of degrees of freedom beyond which Student's t hardly changes.
 const MANY: f64 = 1000.0;
 
-/// Mean over time with its error.
+/// A mean with the half-width of its 95 % confidence interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MeanWithBar {
+    /// The mean.
+    #[serde(rename = "mean")]
+    pub value: f64,
+    /// Half-width of the interval (the error bar).
+    pub bar: f64,
+}
+
+impl fmt::Display for MeanWithBar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&with_error_bar(self.value, self.bar))
+    }
+}
+
+impl MeanWithBar {
+    /// Mean of at least one independent value; the error bar of a single one is infinite.
+    pub fn of(values: &[f64]) -> MeanWithBar {
+        let n = values.len() as f64;
+        let value = values.iter().sum::<f64>() / n;
+        let squares = values.iter().map(|it| (it - value).powi(2)).sum::<f64>();
+        let error = || (squares / (n - 1.0) / n).sqrt();
+        let bar =
+            if values.len() > 1 { student(CONFIDENCE, values.len() - 1) * error() } else { f64::INFINITY };
+        MeanWithBar { value, bar }
+    }
+
+    /// Mean of a time series of at least one value, which may be correlated.
+    pub fn of_time_series(values: &[f64]) -> MeanWithBar {
+        mean_of_correlated(values).unwrap_or_else(|| MeanWithBar::of(values))
+    }
+
+    /// Relative deviation from a known value.
+    #[must_use]
+    pub fn relative_to(self, known: f64) -> MeanWithBar {
+        MeanWithBar { value: self.value / known - 1.0, bar: (self.bar / known).abs() }
+    }
+
+    /// Converts to percent.
+    #[must_use]
+    pub fn percent(self) -> MeanWithBar {
+        MeanWithBar { value: 100.0 * self.value, bar: 100.0 * self.bar }
+    }
+}
+
+impl From<MeanWithBar> for [f64; 2] {
+    fn from(MeanWithBar { value, bar }: MeanWithBar) -> Self {
+        [value, bar]
+    }
+}
+
+/// Mean over time with its error and the numbers that it follows from.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
     /// Value of the mean.
@@ -92,21 +146,20 @@ pub(super) fn bar(error: f64, freedoms: f64) -> f64 {
     student(CONFIDENCE, freedoms.clamp(1.0, MANY) as usize) * error
 }
 
-/// Mean of independent values with the half-width of its 95 % confidence interval; none for fewer than two.
-pub fn mean_of_independent(values: &[f64]) -> Option<[f64; 2]> {
+/// Mean of independent values; none for fewer than two.
+pub fn mean_of_independent(values: &[f64]) -> Option<MeanWithBar> {
     if values.len() < 2 {
         return None;
     }
     let (n, mean) = (values.len() as f64, mean(values));
     let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-    Some([mean, bar((squares / (n * (n - 1.0))).sqrt(), n - 1.0)])
+    Some(MeanWithBar { value: mean, bar: bar((squares / (n * (n - 1.0))).sqrt(), n - 1.0) })
 }
 
-/// Mean of a time series with the half-width of its 95 % confidence interval; none for fewer than two values. The values may be correlated, and
-/// must be stationary.
-pub fn mean_of_correlated(values: &[f64]) -> Option<[f64; 2]> {
+/// Mean of a time series; none for fewer than two values. The values may be correlated, and must be stationary.
+pub fn mean_of_correlated(values: &[f64]) -> Option<MeanWithBar> {
     let error = (values.len() > 1).then(|| WaveError::of_any(values))?;
-    Some([error.mean, bar(error.standard_error, error.waves as f64)])
+    Some(MeanWithBar { value: error.mean, bar: bar(error.standard_error, error.waves as f64) })
 }
 
 /// Half-width of the 95 % confidence interval for the mean of a stationary series, and its degrees of freedom; none for fewer than two values.
@@ -310,7 +363,7 @@ mod tests {
         ] {
             let found =
                 (0..1000).map(|seed| mean_of_correlated(&Noise::new(seed).series(length, memory)).unwrap());
-            let held = share(found.filter(|[mean, bar]| mean.abs() <= *bar).count(), 1000);
+            let held = share(found.filter(|it| it.value.abs() <= it.bar).count(), 1000);
             println!("{length} values, {memory}: {held}");
             assert!((0.92..=most).contains(&held), "{length} values, {memory}: {held}");
         }
@@ -350,7 +403,7 @@ mod tests {
     /// Hand calculation: the mean 2, the standard error 1/√3, Student's t with two degrees of freedom.
     #[test]
     fn independent_values_have_students_half_width() {
-        let [mean, bar] = mean_of_independent(&[1.0, 2.0, 3.0]).unwrap();
+        let MeanWithBar { value: mean, bar } = mean_of_independent(&[1.0, 2.0, 3.0]).unwrap();
         assert!(mean == 2.0 && (bar - 4.3027 / 3f64.sqrt()).abs() < 1e-4, "{bar}");
         assert_eq!(mean_of_independent(&[1.0]), None);
     }

@@ -15,8 +15,8 @@ mod waves;
 mod words;
 
 pub use estimate::{
-    AverageOutcome, Estimate, LIKELY_ENOUGH, estimate_mean, mean_of_correlated, mean_of_independent,
-    predictive_half_width,
+    AverageOutcome, Estimate, LIKELY_ENOUGH, MeanWithBar, estimate_mean, mean_of_correlated,
+    mean_of_independent, predictive_half_width,
 };
 pub use joined::joined;
 pub use rows::AveragedRows;

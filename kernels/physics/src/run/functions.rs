@@ -2,7 +2,7 @@
 
 use super::finished::FinishedError;
 use super::folder::SUMMARY;
-use crate::averages::mean_of_independent;
+use crate::averages::{MeanWithBar, mean_of_independent};
 use crate::io::{FileError, regular_file};
 use crate::quoted;
 use crate::structure::{OBSERVABLES, StructureObservable};
@@ -43,15 +43,13 @@ pub struct StructureFunction {
 pub struct FunctionPoint {
     /// Coordinates: one or two.
     pub over: Vec<f64>,
-    /// Value of the mean.
-    pub mean: f64,
-    /// Half-width of the 95 % confidence interval.
-    pub bar: f64,
+    /// Mean of the function there.
+    pub mean: MeanWithBar,
 }
 
 impl From<FunctionPoint> for Vec<f64> {
-    fn from(FunctionPoint { mut over, mean, bar }: FunctionPoint) -> Self {
-        over.extend([mean, bar]);
+    fn from(FunctionPoint { mut over, mean }: FunctionPoint) -> Self {
+        over.extend(<[f64; 2]>::from(mean));
         over
     }
 }
@@ -63,10 +61,9 @@ pub struct Number {
     pub name: &'static str,
     /// Unit; empty for pure numbers.
     pub unit: &'static str,
-    /// Value of the mean.
-    pub mean: f64,
-    /// Half-width of the 95 % confidence interval.
-    pub bar: f64,
+    /// Its mean.
+    #[serde(flatten)]
+    pub mean: MeanWithBar,
 }
 
 /// Functions that all of some runs have written. A mean is that of the runs, with an error bar from their spread; for one run both are its own.
@@ -103,13 +100,14 @@ pub fn functions_of<'f>(
         };
         if observable.is_density_of_places() {
             // Positions where no disc was sampled have no known error.
-            points.iter_mut().filter(|point| point.mean == 0.0).for_each(|point| point.bar = f64::NAN);
+            let never_sampled = points.iter_mut().filter(|point| point.mean.value == 0.0);
+            never_sampled.for_each(|point| point.mean.bar = f64::NAN);
         }
         let headline = |name: &'static str, unit: &'static str| {
             let of = |summary: &Value| number(summary, observable.name, name);
             let runs: Option<Vec<FunctionPoint>> = summaries.iter().map(of).collect();
             let joined = joined(&runs?.into_iter().map(|run| vec![run]).collect::<Vec<_>>());
-            joined.first().map(|&FunctionPoint { mean, bar, .. }| Number { name, unit, mean, bar })
+            joined.first().map(|&FunctionPoint { mean, .. }| Number { name, unit, mean })
         };
         let headlines = observable.headlines.iter();
         let headlines = headlines.filter_map(|it| headline(it.name, it.unit)).collect();
@@ -152,9 +150,10 @@ fn heading(observable: &StructureObservable) -> String {
 /// Formats a function as comma-separated values: coordinates, mean and error bar, without lines that lack a mean.
 pub(super) fn csv(observable: &StructureObservable, points: &[FunctionPoint]) -> String {
     let mut text = heading(observable) + "\n";
-    for FunctionPoint { over, mean, bar } in points.iter().filter(|point| !point.mean.is_nan()) {
+    let has_mean = |point: &&FunctionPoint| !point.mean.value.is_nan();
+    for FunctionPoint { over, mean: MeanWithBar { value, bar } } in points.iter().filter(has_mean) {
         over.iter().for_each(|over| text.extend([format!("{over:?}"), ",".to_owned()]));
-        text.push_str(&format!("{mean:?},{bar:?}\n"));
+        text.push_str(&format!("{value:?},{bar:?}\n"));
     }
     text
 }
@@ -205,8 +204,9 @@ fn table(path: &Path, observable: &StructureObservable) -> Result<Option<Functio
     })?;
     let point = |line: &str| -> Option<FunctionPoint> {
         let mut over: Vec<f64> = line.split(',').map(str::parse).collect::<Result<_, _>>().ok()?;
-        let (bar, mean) = (over.pop()?, over.pop()?);
-        (over.len() == observable.over.len()).then_some(FunctionPoint { over, mean, bar })
+        let (bar, value) = (over.pop()?, over.pop()?);
+        let mean = MeanWithBar { value, bar };
+        (over.len() == observable.over.len()).then_some(FunctionPoint { over, mean })
     };
     let mut lines = (1..).zip(text.split_inclusive('\n'));
     let whole = |line: &str| line.strip_suffix('\n').map(|line| line.trim_end_matches('\r').to_owned());
@@ -241,7 +241,8 @@ fn summary(folder: &Path) -> Result<Value, FinishedError> {
 fn number(summary: &Value, observable: &str, name: &str) -> Option<FunctionPoint> {
     let find = |list: &Value, name: &str| list.as_array()?.iter().find(|it| it["name"] == name).cloned();
     let found = find(&find(&summary["structure"], observable)?["headlines"], name)?;
-    Some(FunctionPoint { over: vec![], mean: found["mean"].as_f64()?, bar: found["bar"].as_f64()? })
+    let mean = MeanWithBar { value: found["mean"].as_f64()?, bar: found["bar"].as_f64()? };
+    Some(FunctionPoint { over: vec![], mean })
 }
 
 /// Reservation about an observable from one run or several.
@@ -268,11 +269,11 @@ fn joined(runs: &[Vec<FunctionPoint>]) -> Vec<FunctionPoint> {
                 let mut places = point.over.iter().zip(over);
                 places.all(|(other, over)| (other - over).abs() <= SAME * over.abs())
             };
-            run.iter().find(close).map(|point| point.mean)
+            run.iter().find(close).map(|point| point.mean.value)
         };
-        let means: Option<Vec<f64>> = std::iter::once(Some(*mean)).chain(others.iter().map(there)).collect();
-        let [mean, bar] = mean_of_independent(&means?)?;
-        Some(FunctionPoint { over: over.clone(), mean, bar })
+        let means: Option<Vec<f64>> =
+            std::iter::once(Some(mean.value)).chain(others.iter().map(there)).collect();
+        Some(FunctionPoint { over: over.clone(), mean: mean_of_independent(&means?)? })
     };
     first.iter().filter_map(of).collect()
 }
@@ -286,9 +287,14 @@ mod tests {
     fn only_points_of_all_runs_are_joined() {
         let runs =
             [vec![[0.5, 1.0], [1.5, 7.0]], vec![[0.5, 2.0], [1.0, 9.0], [1.5, 7.0]], vec![[0.5 + 1e-9, 3.0]]];
-        let point = |[over, mean]: [f64; 2]| FunctionPoint { over: vec![over], mean, bar: 0.1 };
+        let point = |[over, value]: [f64; 2]| FunctionPoint {
+            over: vec![over],
+            mean: MeanWithBar { value, bar: 0.1 },
+        };
         let runs = runs.map(|run| run.into_iter().map(point).collect::<Vec<_>>());
-        let [FunctionPoint { over, mean, bar }] = &joined(&runs)[..] else { panic!() };
+        let [FunctionPoint { over, mean: MeanWithBar { value: mean, bar } }] = &joined(&runs)[..] else {
+            panic!()
+        };
         assert!(
             over[..] == [0.5] && (mean - 2.0).abs() < 1e-12 && (bar - 4.3027 / 3_f64.sqrt()).abs() < 1e-3
         );

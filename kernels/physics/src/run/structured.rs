@@ -11,6 +11,7 @@ use super::RunError;
 use super::block_means::BlockFunction;
 use super::folder::RunFolder;
 use super::functions::{FunctionPoint, Number, csv};
+use crate::averages::MeanWithBar;
 use crate::io::checkpoint::{Checkpoint, CheckpointColumn};
 use crate::io::run_moment::RunMoment;
 use crate::method::{Every, Prepared, Snapshot};
@@ -285,7 +286,10 @@ impl StructureSampler {
     pub(super) fn write(&self, folder: &RunFolder) -> Result<(), RunError> {
         for sum in &self.sums {
             let BlockFunction { over, means, .. } = self.function(sum);
-            let point = |(over, [mean, bar]): (Vec<f64>, [f64; 2])| FunctionPoint { over, mean, bar };
+            let point = |(over, [value, bar]): (Vec<f64>, [f64; 2])| FunctionPoint {
+                over,
+                mean: MeanWithBar { value, bar },
+            };
             let points: Vec<FunctionPoint> = over.into_iter().zip(means).map(point).collect();
             let text = csv(sum.observable, &points);
             folder.write(sum.observable.file, |out| out.write_all(text.as_bytes()))?;
@@ -319,10 +323,9 @@ impl StructureSampler {
         };
         let headline = |headline: &Headline| {
             let of = |block: &Block| (headline.of)(&whole, &block.means);
-            let [mean, bar] = function.mean(of, over.len() - 1)?;
-            let bar = bar + ((headline.bias)(&whole) * mean).abs();
-            Some(Number { name: headline.name, unit: headline.unit, mean, bar })
-                .filter(|it| !it.mean.is_nan())
+            let [value, bar] = function.mean(of, over.len() - 1)?;
+            let mean = MeanWithBar { value, bar: bar + ((headline.bias)(&whole) * value).abs() };
+            Some(Number { name: headline.name, unit: headline.unit, mean }).filter(|_| !value.is_nan())
         };
         let (headlines, doubt) = match verdict {
             FunctionReliability::Sound => (headlines, None),

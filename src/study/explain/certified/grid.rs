@@ -9,7 +9,7 @@ use super::verdict::PlanVerdict;
 use crate::study::SettingChoice;
 use crate::study::trial::SampleSpan;
 use rayon::ThreadPoolBuilder;
-use stripmine_physics::averages::{AverageOutcome, mean_of_independent};
+use stripmine_physics::averages::{AverageOutcome, MeanWithBar, mean_of_independent};
 use stripmine_physics::method::{ChoiceEffect, Prepared};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
@@ -313,8 +313,9 @@ impl StartEnsemble<'_> {
                     let next = self.start(overrides, number + STARTS * means.len())?;
                     means.push(self.sample(&next, span)?.mean_over(WHOLE));
                 }
-                let [mean, bar] = mean_of_independent(&means).ok_or("only one run finished")?;
-                [mean - reference.known.mean, bar.hypot(reference.known.bar)]
+                let MeanWithBar { value, bar } =
+                    mean_of_independent(&means).ok_or("only one run finished")?;
+                [value - reference.known.mean, bar.hypot(reference.known.bar)]
             }
         };
         Ok(GridPoint {
