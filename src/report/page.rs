@@ -21,8 +21,10 @@ const CAPTION: usize = 110;
 /// Renders the page. Pictures and data are in one folder per item. `left_out` names items made by another version of the program.
 pub(crate) fn render(sections: &[Section], left_out: &[String], tally: &Tally) -> String {
     let mut page = format!(
-        "# Results\n\n{MARK} Download [index.html](index.html), a single file, for interactive charts and films.\n\n",
+        "# Results\n\nStripmine compared with the four papers that it implements, with theory, and with other programs. {MARK} Download \
+         [index.html](index.html), a single file, for interactive charts and films.\n\n",
     );
+    page.push_str(&front(sections));
     page.push_str(&claims(tally));
     for chapter in Chapter::ALL {
         let of_chapter: Vec<&Section> =
@@ -56,6 +58,21 @@ pub(crate) fn render(sections: &[Section], left_out: &[String], tally: &Tally) -
         `provenance.json` are byte-identical on every host.\n",
     );
     page
+}
+
+/// Results of the first screen: answer and first picture of each.
+fn front(sections: &[Section]) -> String {
+    let mut shown: Vec<&Section> = sections.iter().filter(|section| section.front.is_some()).collect();
+    shown.sort_by_key(|section| section.front);
+    let mut text = String::new();
+    for section in shown {
+        let Section { title, answer, .. } = section;
+        let _ = write!(text, "**[{title}](#{})**: {answer}\n\n", anchor(title));
+        if let Some(figure) = section.figures.first() {
+            let _ = write!(text, "![{}]({}/{}.svg)\n\n", figure.title, section.folder(), figure.name);
+        }
+    }
+    text
 }
 
 /// Table of claims by source and verdict, and the claims that failed.

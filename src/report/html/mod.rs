@@ -141,8 +141,8 @@ fn summary(sections: &[Section], pictures: &[Vec<Inline>], tally: &Tally) -> Mar
                 the result. Written by "
                 code { "stripmine reproduce" } "."
             }
-            (claims(tally))
             (front(sections, pictures))
+            (claims(tally))
             details {
                 summary { "Programs, hosts and dates of these results" }
                 @for made in super::origin_sentences(sections) {
