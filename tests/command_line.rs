@@ -125,7 +125,7 @@ fn bad_usage_exits_with_2_and_help() {
         (&["table", "--occupancy", "1.5"], &["occupancy", "1.5"]),
         (&["table", "--occupancy", "NaN"], &["occupancy", "NaN"]),
         (&["table", "--particles", "0"], &["at least one"]),
-        (&["table", "--particles", "3"], &["at least 5 cells"]),
+        (&["table", "--particles", "3"], &["needs at least 5"]),
         (&["table", "--particles", "18446744073709551615"], &["number"]),
         (&["reproduce", "--only", "figure-9"], &["table", "listing"]),
         (&["nonsense"], &["nonsense"]),

@@ -41,7 +41,7 @@ const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["validate-model", "--host", "scene.toml"], 3, "input", &["scene.toml"]),
     (&["listing"], 2, "usage", &["PART"]),
     (&["listing", "foces"], 2, "usage", &["forces"]),
-    (&["listing", "forces", "--particles", "3"], 2, "usage", &["5 cells"]),
+    (&["listing", "forces", "--particles", "3"], 2, "usage", &["at least 5"]),
     (&["scene"], 2, "usage", &["check"]),
     (&["scene", "show", "three-discs"], 2, "usage", &["two-discs"]),
     (&["scene", "check"], 2, "usage", &["SCENE"]),

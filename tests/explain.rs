@@ -74,7 +74,7 @@ fn measurements_are_cached_per_host_and_removable() {
     fs::write(&file, text).unwrap();
     ends_with(&explain(folder, &[&GAS[..3], &["--estimate"]].concat()), 4, &["no cached measurements"]);
     let forgotten = explain(folder, &["--forget"]);
-    assert_eq!(String::from_utf8_lossy(&forgotten.stdout), "removed: 1\n");
+    assert_eq!(String::from_utf8_lossy(&forgotten.stdout), "removed 1 cached measurement\n");
     assert!(!file.exists());
 }
 
@@ -206,7 +206,7 @@ fn forgetting_removes_cached_measurements_only() {
         [("mine.json", "{\"scene\":\"mine\"}"), (key, "{\"scene\":\"another\"}"), ("notes.txt", "mine")];
     mine.iter().for_each(|(name, text)| fs::write(cache.join(name), text).unwrap());
     let forgotten = explain(folder, &["--forget"]);
-    assert_eq!(String::from_utf8_lossy(&forgotten.stdout), "removed: 1\n");
+    assert_eq!(String::from_utf8_lossy(&forgotten.stdout), "removed 1 cached measurement\n");
     let mut left: Vec<_> = fs::read_dir(&cache).unwrap().map(|it| it.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, [key, "mine.json", "notes.txt"]);
@@ -421,7 +421,7 @@ fn nonstationary_quantities_are_averaged_over_the_run() {
     assert!((0.001 * most..most).contains(&mean) && bar < 0.5 * mean, "{mean} {bar}");
     let rows = found["analyzed"].as_array().unwrap();
     assert!(
-        rows.iter().any(|row| row["what"].as_str().unwrap().starts_with("kinetic over the run")),
+        rows.iter().any(|row| row["what"].as_str().unwrap().starts_with("mean kinetic over the run")),
         "{rows:#?}"
     );
     assert!(rows.iter().any(|row| row["what"] == "of it: forces") && rows.len() > 4, "{rows:#?}");

@@ -181,7 +181,7 @@ mod tests {
         let divide = "steps = { divide = 1, multiply = 3 }";
         let default = r#"default = { value = 6, provenance = "assumed", note = "why not" }"#;
         for (old, new, expected) in [
-            ("format = 1", "format = 2", "`format` is 2, but this program reads 1"),
+            ("format = 1", "format = 2", "`format` is 2\n  expected: 1"),
             ("value = 12.5", "value = 0", "`clock_period_ns` is 0\n  expected: positive"),
             ("value = 12.5", "value = nan", "`clock_period_ns` is NaN\n  expected: positive"),
             ("value = 14", "value = -14", "`start_up.divide` is -14\n  expected: positive"),

@@ -208,7 +208,7 @@ fn rare_events_give_no_mean_before_they_happen() {
         "close",
     ];
     let output = stripmine(folder, &[&close[..], &["--set", "run.events=100", "--set", target]].concat());
-    ends_with(&output, 4, &["run.events=100 is over"]);
+    ends_with(&output, 4, &["latest end, run.events=100"]);
 }
 
 /// Different starts with the same noise converge to one run in a bath.
