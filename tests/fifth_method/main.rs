@@ -27,7 +27,7 @@ fn main() -> ExitCode {
     }
     scenes_are_listed_checked_and_refused();
     a_run_is_observed();
-    it_keeps_what_every_method_promises();
+    free_flight_keeps_all_promises();
     it_is_measured();
     it_is_studied();
     it_is_documented();
@@ -92,7 +92,7 @@ fn a_run_is_observed() {
     assert_eq!(refused.status.code(), Some(2));
 }
 
-fn it_keeps_what_every_method_promises() {
+fn free_flight_keeps_all_promises() {
     static FIFTH: Methods = &[&free_flight::ENTRY];
     let held = table::hold(FIFTH, command, table::Extent::Quick);
     assert!(held.presets == 1 && held.engines == 1 && held.sessions > 2, "{held:?}");

@@ -283,7 +283,7 @@ fn damaged_files_are_refused_with_the_location() {
         (
             chunk("log/particles/id"),
             &[3],
-            "frame 0, log/particles/id: row 2 is 3, which is the id of another particle",
+            "frame 0, log/particles/id: row 2 is 3, which is also the id of another particle",
         ),
     ];
     let first = |bytes: &[u8]| {
@@ -399,5 +399,5 @@ fn holes_take_no_memory() {
     let many = u32::MAX.to_le_bytes();
     let rows = u64::from(u32::MAX).to_le_bytes();
     let said = sparse(&[(count, &many), (entry("particles/typeid") + 8, &rows)]);
-    assert!(said.contains("frame 0, particles/typeid: it takes 17179869180 bytes"), "{said}");
+    assert!(said.contains("frame 0, particles/typeid: it has 17179869180 bytes"), "{said}");
 }
