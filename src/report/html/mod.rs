@@ -95,9 +95,9 @@ fn head(title: &PreEscaped<&str>) -> Markup {
     }
 }
 
-/// Style rules of pictures on a dark screen.
+/// Style rules of pictures on a dark screen. The class is that of the picture itself: rules do not see beyond it where it is shown a second time.
 fn dark_picture_rules() -> String {
-    format!("@media screen and (prefers-color-scheme:dark){{{}}}\n", style::dark_rules(".picture "))
+    format!("@media screen and (prefers-color-scheme:dark){{{}}}\n", style::dark_rules(".drawn "))
 }
 
 fn chapter_sections(chapter: Chapter, sections: &[Section]) -> Vec<&Section> {

@@ -173,6 +173,8 @@ fn paired_backquotes_mark_code() {
 fn inline_pictures_share_markers() {
     let page = page();
     assert_eq!(page.matches("<svg id=").count(), 4);
+    // Colours for dark screens follow a picture where it is shown a second time.
+    assert_eq!(page.matches("class=\"drawn").count(), 4);
     // The first screen repeats one picture per item.
     assert_eq!(page.matches("<use href=\"#").count(), 2);
     assert_eq!(page.matches("<marker id=\"m0-0072b2\"").count(), 1);
