@@ -191,11 +191,9 @@ fn only_ordinary_files_are_read() {
     std::fs::create_dir(folder.path().join("folder.toml")).unwrap();
     let scene = "format = 2\nmethod.kind = \"lattice-md\"\nunits = \"SI\"\n[domain]\nsides = [10.0, 8.0]\n[particles]\nfile = \"FILE\"\n[law]\nstiffness = 1\n\
                  [integrator]\ndt = 1e-3\n[run]\nsteps = 1\n";
-    for (name, words) in [
-        ("pipe.toml", "it is a pipe; expected an ordinary file"),
-        ("zero.toml", "it is a device; expected an ordinary file"),
-        ("folder.toml", "it is a folder; expected an ordinary file"),
-    ] {
+    for (name, words) in
+        [("pipe.toml", "it is a pipe"), ("zero.toml", "it is a device"), ("folder.toml", "it is a folder")]
+    {
         std::fs::write(folder.path().join("scene.toml"), scene.replace("FILE", name)).unwrap();
         let run = format!("{name}.run");
         std::fs::create_dir(folder.path().join(&run)).unwrap();
@@ -207,7 +205,7 @@ fn only_ordinary_files_are_read() {
         ] {
             let (found, text) = said(arguments, folder.path());
             assert_eq!(found, Some(code), "{arguments:?}: {text}");
-            assert!(text.contains(words), "{arguments:?}: {text}");
+            assert!(text.contains(words) && text.contains("an ordinary file"), "{arguments:?}: {text}");
         }
         let checkpoint =
             stripmine_physics::io::checkpoint::Checkpoint::read(folder.path().join(name)).unwrap_err();

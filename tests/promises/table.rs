@@ -242,7 +242,8 @@ impl Case {
         let (count, unit) = parts[0].split_once(' ').expect("a count and a unit");
         assert!(["steps", "events"].contains(&unit), "{}: {line}", self.label());
         assert_eq!(count, summary[unit].to_string(), "{}: {line}", self.label());
-        let time: f64 = parts[1].trim_start_matches(" time ").parse().expect("a time");
+        let time = parts[1].trim_start_matches(" time ").split(' ').next().expect("a number and its unit");
+        let time: f64 = time.parse().expect("a time");
         let known = summary["time"].as_f64().expect("a time");
         assert!((time - known).abs() <= 1e-8 * known, "{}: {line}: {known}", self.label());
     }

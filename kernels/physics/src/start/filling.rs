@@ -85,10 +85,12 @@ pub(super) fn grain_count(
         )));
     }
     if count < 1.0 {
-        return Err(refuse(format!(
+        let error = refuse(format!(
             "this is less than one disc, which alone fills {} of the area open to grains",
             significant(share, 4)
-        )));
+        ));
+        let error = error.expecting("at least one disc");
+        return Err(error.advising("raise particles.packing_fraction, or make the discs smaller"));
     }
     // A few discs in a small box may reach a higher fraction than many in a large one.
     let compresses = most == COMPRESSED;
