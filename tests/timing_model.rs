@@ -90,5 +90,5 @@ fn shipped_host_model_is_named_when_used() {
     let folder = tempfile::tempdir().unwrap();
     let path = file(&folder, "format = 3\n");
     let out = stripmine(&["validate-model", "--host", &path]).code(3);
-    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("`format` is 3, but"));
+    assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("`format` is 3\n"));
 }
