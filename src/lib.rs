@@ -62,9 +62,9 @@
 //! A chart with logarithmic axes:
 //!
 //! ```
-//! use stripmine::report::figure::{Axis, Chart, Style, svg};
+//! use stripmine::report::figure::{ChartAxis, Chart, Style, svg};
 //!
-//! let figure = Chart::of(Axis::logarithmic("particles", None), Axis::logarithmic("time", Some("ms")))
+//! let figure = Chart::of(ChartAxis::logarithmic("particles", None), ChartAxis::logarithmic("time", Some("ms")))
 //!     .series("all pairs", Style::Joined, 0, (1..=10).map(|n| (f64::from(n), f64::from(n * n))))
 //!     .figure("cost", "Cost");
 //! assert!(svg(&figure)?.contains("time (ms)"));

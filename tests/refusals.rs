@@ -489,5 +489,5 @@ fn sums_that_overflow_are_failures() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(4), "{said}");
-    assert!(said.contains("not finite"), "{said}");
+    assert!(said.contains("not a finite number"), "{said}");
 }
