@@ -113,7 +113,7 @@ impl Folder {
     pub(crate) fn write_page(&self, items: &[&str]) -> Result<(), CommandFailure> {
         let (mut sections, mut left_out) = (Vec::new(), Vec::new());
         for item in items {
-            match self.read(item)? {
+            match self.read(item, true)? {
                 ItemState::There(section) => sections.push(*section),
                 ItemState::OfAnotherVersion => left_out.push((*item).to_owned()),
                 ItemState::Absent => {}
@@ -137,16 +137,16 @@ impl Folder {
         Ok(())
     }
 
-    /// Reads the item's section, if the folder has it.
-    fn read(&self, name: &str) -> Result<ItemState, CommandFailure> {
+    /// Reads the item's section, if the folder has it. With `renews`, files that the current template changes are written again.
+    fn read(&self, name: &str, renews: bool) -> Result<ItemState, CommandFailure> {
         let Some(folder) = self.item(name) else { return Ok(ItemState::Absent) };
         let Some(provenance) = self.provenance(name)? else { return Ok(ItemState::OfAnotherVersion) };
         let made = match Page::of(name)? {
             Some(page) => made::read(&folder, &page)?,
             None => None,
         };
-        let section = match made.map(|made| self.renew_section(name, &folder, &made, &provenance)).transpose()
-        {
+        let section = |made: FinishedItem| self.current_section(name, (&folder, renews), &made, &provenance);
+        let section = match made.map(section).transpose() {
             // The template of this version needs other tables.
             Err(_) if provenance.origin.version != built().version => None,
             section => section?,
@@ -155,12 +155,12 @@ impl Folder {
         Ok(section.map_or(ItemState::OfAnotherVersion, there))
     }
 
-    /// Section of an item from its stored data and the current template. Files that the template changes are written again; the
-    /// provenance of the data stays.
-    fn renew_section(
+    /// Section of an item from its stored data and the current template. With `renews`, files that the template changes are written
+    /// again; the provenance of the data stays.
+    fn current_section(
         &self,
         name: &str,
-        folder: &Path,
+        (folder, renews): (&Path, bool),
         made: &FinishedItem,
         provenance: &Provenance,
     ) -> Result<Section, CommandFailure> {
@@ -168,7 +168,7 @@ impl Folder {
         let is_there = |(name, bytes): &(String, Vec<u8>)| {
             regular_file::read(&folder.join(name), LONGEST).is_ok_and(|there| there == *bytes)
         };
-        if !files.iter().all(is_there) {
+        if renews && !files.iter().all(is_there) {
             self.write(name, made, provenance)?;
         }
         Ok(section)
@@ -196,7 +196,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be read, or its template or a claim names missing data.
     pub fn section(&self, name: &str) -> Result<Option<Section>, CommandFailure> {
-        match self.read(name)? {
+        match self.read(name, false)? {
             ItemState::There(section) => Ok(Some(*section)),
             ItemState::OfAnotherVersion | ItemState::Absent => Ok(None),
         }
@@ -239,6 +239,22 @@ fn is_committed(folder: &Path) -> bool {
 mod tests {
     use super::*;
     use std::fs;
+
+    /// A picture that the current template would draw in another way.
+    #[test]
+    fn reading_a_section_writes_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let item = folder.path().join("corrector");
+        fs::create_dir(&item).unwrap();
+        let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports/corrector");
+        for entry in fs::read_dir(committed).unwrap().map(|entry| entry.unwrap()) {
+            fs::copy(entry.path(), item.join(entry.file_name())).unwrap();
+        }
+        let picture = item.join("energy-error.svg");
+        fs::write(&picture, "<svg/>").unwrap();
+        assert!(Folder::of_another(folder.path()).section("corrector").unwrap().is_some());
+        assert_eq!(fs::read_to_string(picture).unwrap(), "<svg/>");
+    }
 
     #[test]
     fn uncommitted_builds_cannot_overwrite_committed_results() {
