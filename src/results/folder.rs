@@ -252,7 +252,7 @@ mod tests {
         }
         let picture = item.join("energy-error.svg");
         fs::write(&picture, "<svg/>").unwrap();
-        assert!(Folder::of_another(folder.path()).section("corrector").unwrap().is_some());
+        assert!(Folder::opened_elsewhere(folder.path()).section("corrector").unwrap().is_some());
         assert_eq!(fs::read_to_string(picture).unwrap(), "<svg/>");
     }
 
