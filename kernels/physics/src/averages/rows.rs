@@ -11,7 +11,7 @@ const EVEN: f64 = 1e-3;
 ///
 /// The first row is the base of all increments and not a value. The others are stored in at most `MOST_BLOCKS` blocks; whenever these are full, the
 /// number of rows in a block is doubled. A block has the mean of instantaneous and interval values over its rows, and the last value of counters.
-/// The same rows give the same blocks for any number of sessions.
+/// Blocks depend on the rows alone, not on the number of sessions.
 #[derive(Clone, Debug)]
 pub struct AveragedRows {
     quantities: &'static [ObservedQuantity],
@@ -30,7 +30,7 @@ pub struct AveragedRows {
 }
 
 impl AveragedRows {
-    /// Empty rows of quantities, one of which is the time.
+    /// Empty rows of quantities; the time is among them.
     pub fn new(quantities: &'static [ObservedQuantity]) -> AveragedRows {
         AveragedRows {
             quantities,

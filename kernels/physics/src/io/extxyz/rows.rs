@@ -40,7 +40,7 @@ const OMEGA: usize = 6;
 const MASSES: usize = 7;
 const MOMENTA: usize = 8;
 
-/// Quantities that a start requires: the columns, one of which must be present, and their name in messages.
+/// Quantities that a start requires: alternative columns (at least one must be present), and their name in messages.
 const REQUIRED: [(&[usize], &str); 4] = [
     (&[POS], "`pos:R:3` (or `pos:R:2`)"),
     (&[VELO, MOMENTA], "`velo:R:3` (or `velo:R:2`, or `momenta:R:3`, which is divided by the masses)"),
