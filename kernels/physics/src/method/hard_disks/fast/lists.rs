@@ -68,7 +68,7 @@ pub(crate) fn displacement_limit(
 
 impl DiscNeighbourLists {
     /// Creates lists without discs, with space for about `most` discs each; `largest` is the largest radius (length). Rows have at least
-    /// `stride` entries, a multiple of [`ROW_UNIT`], one of which is the count.
+    /// `stride` entries, a multiple of [`ROW_UNIT`]; the count is among them.
     pub(super) fn new(
         domain: Domain,
         count: usize,

@@ -18,7 +18,7 @@ pub(crate) struct ExclusiveGridSize {
 }
 
 impl ExclusiveGridSize {
-    /// Fewest cells of which none can hold two centres of discs with at least this radius. ISO99 (2)–(5), with σ a radius.
+    /// Smallest number of cells such that no cell can hold the centres of two discs of at least this radius. ISO99 (2)–(5), with σ a radius.
     ///
     /// # As printed
     /// The symbols for the number of cells and for their size are swapped in (2)–(5).
