@@ -273,12 +273,12 @@ fn runs_are_tuned_by_measurements_of_similar_scenes() {
     // The cheapest cached configuration.
     let kept = fs::read_dir(folder.join("cache/stripmine/explain")).unwrap().next().unwrap().unwrap().path();
     let kept: Value = serde_json::from_slice(&fs::read(kept).unwrap()).unwrap();
-    let is_own = |way: &&Value| {
-        let label = way["label"].as_str().unwrap();
-        label.starts_with("gear6 f64") && label.ends_with("fast") && !way["cost"].is_null()
+    let is_own = |configuration: &&Value| {
+        let label = configuration["label"].as_str().unwrap();
+        label.starts_with("gear6 f64") && label.ends_with("fast") && !configuration["cost"].is_null()
     };
-    let ways = kept["findings"]["ways"].as_array().unwrap();
-    let cheapest = ways.iter().find(is_own).unwrap()["settings"].as_array().unwrap();
+    let configurations = kept["findings"]["ways"].as_array().unwrap();
+    let cheapest = configurations.iter().find(is_own).unwrap()["settings"].as_array().unwrap();
     let search = cheapest.iter().find(|it| it[0] == "search").unwrap()[1].as_str().unwrap();
     let (said, scene) = run("particles.count=150", &[]);
     assert!(said.contains(&format!("tuned: search.by={search}")) && said.contains("measured"), "{said}");
@@ -457,7 +457,7 @@ fn plans_for_a_time_minimise_the_error() {
 fn error_of_a_mean_is_charted_against_cost() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    for (chart, scene, quantity, ways) in [
+    for (chart, scene, quantity, configurations) in [
         ("accuracy", "langevin-dense", "potential", 2..=2),
         // A configuration that costs several times as much is left out and named.
         ("work-precision", "hard-disks", "compressibility", 1..=2),
@@ -471,7 +471,10 @@ fn error_of_a_mean_is_charted_against_cost() {
             let errors = curves.entry(point["configuration"].as_str().unwrap()).or_default();
             errors.push(point["error"].as_f64().unwrap());
         }
-        assert!(data["summary"][0]["quantity"] == quantity && ways.contains(&curves.len()), "{data:#}");
+        assert!(
+            data["summary"][0]["quantity"] == quantity && configurations.contains(&curves.len()),
+            "{data:#}"
+        );
         for (curve, errors) in curves {
             assert!(errors.len() > 3 && errors.last() < errors.first(), "{curve}: {errors:?}");
         }

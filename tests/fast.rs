@@ -229,11 +229,11 @@ fn naive_forces(model: &GranularModel, discs: &Particles) -> Vec<[f64; 2]> {
     let mut forces = vec![[0.0; 2]; discs.len()];
     for (i, a) in discs.all().iter().enumerate() {
         for (j, b) in discs.all().iter().enumerate().skip(i + 1) {
-            let way = model.domain().displacement(a.planar_position(), b.planar_position());
-            let distance = way[0].hypot(way[1]);
+            let displacement = model.domain().displacement(a.planar_position(), b.planar_position());
+            let distance = displacement[0].hypot(displacement[1]);
             let depth = (a.radius + b.radius - distance).max(0.0);
             for axis in 0..2 {
-                let force = model.contact.stiffness * depth.powf(1.5) * way[axis] / distance;
+                let force = model.contact.stiffness * depth.powf(1.5) * displacement[axis] / distance;
                 forces[i][axis] -= force;
                 forces[j][axis] += force;
             }

@@ -59,7 +59,7 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
-const ALL_WAYS: [&[&str]; 3] = [&[], &["--resume"], &["--overwrite"]];
+const ALL_OPTIONS: [&[&str]; 3] = [&[], &["--resume"], &["--overwrite"]];
 
 /// A folder that no run wrote is refused with its contents, however a run begins, and stays as it was.
 #[test]
@@ -71,8 +71,8 @@ fn foreign_folders_are_left_alone() {
         let out = folder.path().join(names[0]);
         fs::create_dir(&out).unwrap();
         names.iter().for_each(|name| fs::write(out.join(name), "mine").unwrap());
-        for way in ALL_WAYS {
-            refused(run(&out, way), 2, &["run.files", names[0]]);
+        for options in ALL_OPTIONS {
+            refused(run(&out, options), 2, &["run.files", names[0]]);
             assert_eq!(contents(&out).len(), names.len());
             assert!(contents(&out).values().all(|bytes| bytes == b"mine"));
         }
@@ -102,9 +102,9 @@ fn runs_do_not_overwrite_their_scene() {
     let folder = tempfile::tempdir().unwrap();
     let scene = stripmine(&["scene", "show", "two-discs"]).output().unwrap().stdout;
     fs::write(folder.path().join("scene.toml"), &scene).unwrap();
-    for way in ALL_WAYS {
+    for options in ALL_OPTIONS {
         let mut command = stripmine(&["run", "scene.toml", "--out", "."]);
-        command.current_dir(folder.path()).args(way);
+        command.current_dir(folder.path()).args(options);
         refused(command, 2, &["scene.toml"]);
         assert_eq!(contents(folder.path()), BTreeMap::from([("scene.toml".to_owned(), scene.clone())]));
     }
@@ -146,8 +146,8 @@ fn foreign_files_in_a_run_folder_are_refused() {
     let out = folder.path().join("run");
     succeed(run(&out, &["--set", "output.lammps_data=false"]));
     fs::write(out.join("final.data"), "mine").unwrap();
-    for way in ["--resume", "--overwrite"] {
-        refused(run(&out, &[way]), 2, &["final.data"]);
+    for options in ["--resume", "--overwrite"] {
+        refused(run(&out, &[options]), 2, &["final.data"]);
         assert_eq!(fs::read(out.join("final.data")).unwrap(), b"mine");
     }
 }
@@ -165,10 +165,10 @@ fn links_are_not_followed() {
     for name in names {
         fs::remove_file(out.join(&name)).unwrap();
         symlink(&thesis, out.join(&name)).unwrap();
-        for way in ["--resume", "--overwrite"] {
-            let code = run(&out, &[way]).output().unwrap().status.code();
-            assert!([Some(0), Some(2), Some(6)].contains(&code), "{name} {way}: {code:?}");
-            assert_eq!(fs::read(&thesis).unwrap(), b"mine", "{name} {way}");
+        for options in ["--resume", "--overwrite"] {
+            let code = run(&out, &[options]).output().unwrap().status.code();
+            assert!([Some(0), Some(2), Some(6)].contains(&code), "{name} {options}: {code:?}");
+            assert_eq!(fs::read(&thesis).unwrap(), b"mine", "{name} {options}");
         }
         let _ = fs::remove_dir_all(&out);
         succeed(run(&out, &["--set", "run.checkpoint_every=5"]));
@@ -194,8 +194,8 @@ fn lists_with_foreign_names_are_refused() {
         ("stripmine run files 1\n\u{1b}[2J\n", "run.files:2"),
     ] {
         fs::write(out.join("run.files"), list).unwrap();
-        for way in ALL_WAYS {
-            refused(run(&out, way), 6, &[words]);
+        for options in ALL_OPTIONS {
+            refused(run(&out, options), 6, &[words]);
         }
         assert!(folder.path().join("thesis.tex").exists() && out.join("notes.txt").exists());
     }
@@ -223,8 +223,8 @@ fn only_one_process_writes_to_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let mut child = endless(&out);
-    for way in ALL_WAYS {
-        refused(run(&out, way), 2, &[&format!("process {}", child.id()), "since", "--out"]);
+    for options in ALL_OPTIONS {
+        refused(run(&out, options), 2, &[&format!("process {}", child.id()), "since", "--out"]);
     }
     child.kill().unwrap();
     child.wait().unwrap();

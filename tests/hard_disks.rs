@@ -105,9 +105,9 @@ fn a_cooling_gas_follows_haffs_law() {
 #[test]
 fn engines_and_masks_do_not_change_bits() {
     let folder = tempfile::tempdir().unwrap();
-    let frames = |way: &str| {
-        let out = folder.path().join(way);
-        let more = ["--set", "run.time=10", "--set", way, "--set", "particles.count=200"];
+    let frames = |setting: &str| {
+        let out = folder.path().join(setting);
+        let more = ["--set", "run.time=10", "--set", setting, "--set", "particles.count=200"];
         run("hard-disks", &out, &[&more[..], &["--set", "run.snapshot_every=4"]].concat());
         fs::read_to_string(out.join("trajectory.xyz")).unwrap()
     };
@@ -115,9 +115,10 @@ fn engines_and_masks_do_not_change_bits() {
     let times: Vec<&str> =
         source.lines().filter_map(|line| line.split("Time=").nth(1)?.split(' ').next()).collect();
     assert_eq!(times, ["0.0", "4.0", "8.0", "10.0"]);
-    for way in ["search.mask=min", "search.mask=r4", "machine.engine=fast", "machine.instruction_set=scalar"]
+    for setting in
+        ["search.mask=min", "search.mask=r4", "machine.engine=fast", "machine.instruction_set=scalar"]
     {
-        assert!(frames(way) == source, "{way}");
+        assert!(frames(setting) == source, "{setting}");
     }
 }
 

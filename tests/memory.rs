@@ -48,10 +48,10 @@ fn rarer_configurations_take_the_estimated_memory() {
     ]);
 }
 
-fn judged_by(ways: &[&[&str]]) {
+fn judged_by(settings: &[&[&str]]) {
     let taken =
         |sets: &[&str]| foreseen_and_taken("bench", &[sets, &["particles.count=100000"]].concat(), FRAME);
-    let said: Vec<_> = ways.iter().map(|sets| taken(sets)).collect();
+    let said: Vec<_> = settings.iter().map(|sets| taken(sets)).collect();
     judged(&said);
 }
 
@@ -175,9 +175,9 @@ fn structure_samples_take_the_estimated_memory() {
 /// Hard discs with both engines; three times as many, so three frames.
 #[test]
 fn hard_discs_take_the_estimated_memory() {
-    let ways = ["machine.engine=fast", "machine.engine=reference"];
-    let said =
-        ways.map(|way| foreseen_and_taken("hard-disks", &["particles.count=300000", way], 3.0 * FRAME));
+    let settings = ["machine.engine=fast", "machine.engine=reference"];
+    let said = settings
+        .map(|setting| foreseen_and_taken("hard-disks", &["particles.count=300000", setting], 3.0 * FRAME));
     judged(&said);
 }
 

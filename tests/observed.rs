@@ -40,7 +40,7 @@ fn column(name: &str) -> usize {
 }
 
 /// All configurations that advance granular discs.
-const WAYS: [Sets<'static>; 8] = [
+const CONFIGURATIONS: [Sets<'static>; 8] = [
     &["machine.engine=fast", "search.by=lattice"],
     &["machine.engine=fast", "search.by=sectors"],
     &["machine.engine=fast", "search.by=neighbor-list"],
@@ -65,8 +65,8 @@ const SCENES: [(&str, Sets<'static>); 5] = [
 #[test]
 fn rows_agree_with_naive_sums() {
     for (scene, of_scene) in SCENES {
-        for way in WAYS {
-            let sets = [of_scene, way];
+        for configuration in CONFIGURATIONS {
+            let sets = [of_scene, configuration];
             let scenery = scenery(scene, &sets);
             let mut simulation = begin(scene, &sets);
             for steps in [0, 30, 120] {
@@ -74,7 +74,11 @@ fn rows_agree_with_naive_sums() {
                 let row = simulation.observe();
                 let particles = simulation.particles();
                 let naive = Observation::of(steps, simulation.clock().time, &particles, &scenery);
-                assert_eq!(row[column("contacts")], naive.contacts as f64, "{scene} {way:?} {steps}");
+                assert_eq!(
+                    row[column("contacts")],
+                    naive.contacts as f64,
+                    "{scene} {configuration:?} {steps}"
+                );
                 // The error of a sum that nearly cancels is the rounding of its terms.
                 let count = particles.grain_count() as f64;
                 let energy = naive.kinetic + naive.elastic + naive.rotational;
@@ -98,7 +102,7 @@ fn rows_agree_with_naive_sums() {
                     let off = (row[column(name)] - expected).abs();
                     assert!(
                         off <= 2e-11 * scale,
-                        "{scene} {way:?} {steps}: {name} differs by {off}, scale {scale}"
+                        "{scene} {configuration:?} {steps}: {name} differs by {off}, scale {scale}"
                     );
                 }
             }
@@ -113,11 +117,14 @@ fn bits(row: &[f64]) -> Vec<u64> {
 /// Threads and instructions do not change a bit, with more discs than a single thread handles.
 #[test]
 fn rows_do_not_depend_on_threads_or_instructions() {
-    for way in &WAYS[..5] {
+    for configuration in &CONFIGURATIONS[..5] {
         let row = |threads: usize, set: InstructionSet| {
             let instructions = format!("machine.instruction_set={}", set.name());
-            let sets: [Sets<'_>; 3] =
-                [&["particles.count=6000", "particles.packing_fraction=0.80"], way, &[&instructions]];
+            let sets: [Sets<'_>; 3] = [
+                &["particles.count=6000", "particles.packing_fraction=0.80"],
+                configuration,
+                &[&instructions],
+            ];
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut simulation = begin("bench", &sets);
@@ -126,9 +133,9 @@ fn rows_do_not_depend_on_threads_or_instructions() {
             })
         };
         let first = row(1, InstructionSet::best());
-        assert_eq!(row(3, InstructionSet::best()), first, "{way:?}");
+        assert_eq!(row(3, InstructionSet::best()), first, "{configuration:?}");
         for set in InstructionSet::available() {
-            assert_eq!(row(2, set), first, "{way:?} by {set:?}");
+            assert_eq!(row(2, set), first, "{configuration:?} by {set:?}");
         }
     }
 }
@@ -150,8 +157,8 @@ fn resumed_runs_report_as_uninterrupted_ones() {
     for (scene, of_scene, [cut, end]) in
         [("pipe-small", &[][..], [500, 600]), ("shaken-box", &["particles.count=40"], [150, 200])]
     {
-        for way in WAYS.into_iter().chain(more) {
-            let sets = [of_scene, way];
+        for configuration in CONFIGURATIONS.into_iter().chain(more) {
+            let sets = [of_scene, configuration];
             let mut whole = begin(scene, &sets);
             advance(whole.as_mut(), cut);
             let (clock, snapshot) = (whole.clock(), whole.snapshot());
@@ -160,12 +167,16 @@ fn resumed_runs_report_as_uninterrupted_ones() {
             for steps in [cut, cut + 1, end] {
                 advance(whole.as_mut(), steps);
                 advance(resumed.as_mut(), steps);
-                let what = format!("{scene} {way:?} after {steps} of {cut}");
+                let what = format!("{scene} {configuration:?} after {steps} of {cut}");
                 assert_eq!(bits(&resumed.observe()), bits(&whole.observe()), "{what}");
                 assert_eq!(of_the_run(resumed.as_ref()), of_the_run(whole.as_ref()), "{what}");
                 assert_eq!(resumed.warnings(), whole.warnings(), "{what}");
             }
-            assert!(scene != "pipe-small" || whole.warnings().is_empty(), "{way:?}: {:?}", whole.warnings());
+            assert!(
+                scene != "pipe-small" || whole.warnings().is_empty(),
+                "{configuration:?}: {:?}",
+                whole.warnings()
+            );
         }
     }
 }
@@ -195,7 +206,7 @@ fn list_counters_continue_in_other_methods() {
 #[test]
 fn disc_on_the_rim_has_not_crossed() {
     for origin in ["0.0", "0.1", "-0.7", "1e3", "-3.3", "0.3"] {
-        for way in WAYS {
+        for configuration in CONFIGURATIONS {
             let origin_of_box = format!("domain.origin=[{origin}, {origin}]");
             let position = format!("particles.positions=[[{origin}, {origin}]]");
             let sets: [Sets<'_>; 2] = [
@@ -208,15 +219,18 @@ fn disc_on_the_rim_has_not_crossed() {
                     "particles.velocities=[[0.0, 0.0]]",
                     "particles.omegas=[0.0]",
                 ],
-                way,
+                configuration,
             ];
             let mut simulation = begin("two-discs", &sets);
             let work = |simulation: &dyn Simulation| simulation.observe()[column("gravity_work")];
-            assert_eq!(work(simulation.as_ref()), 0.0, "{origin} {way:?}");
+            assert_eq!(work(simulation.as_ref()), 0.0, "{origin} {configuration:?}");
             advance(simulation.as_mut(), 100);
             // m g (g t²/2), with rounding of positions in single precision.
             let expected = 0.5 * 0.1 * 0.1;
-            assert!((work(simulation.as_ref()) - expected).abs() < 1e-2 * expected, "{origin} {way:?}");
+            assert!(
+                (work(simulation.as_ref()) - expected).abs() < 1e-2 * expected,
+                "{origin} {configuration:?}"
+            );
         }
     }
 }

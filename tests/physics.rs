@@ -145,9 +145,9 @@ fn pair(contact: Contact, dt: f64, steps: f64, [normal, shear]: [f64; 2]) -> (Gr
 
 /// Overlap, normal from the second to the first, relative velocity along normal and tangent.
 fn apart(discs: &[Particle]) -> (f64, [f64; 2], [f64; 2]) {
-    let way = [0, 1].map(|axis| discs[0].position[axis] - discs[1].position[axis]);
-    let distance = way[0].hypot(way[1]);
-    let n = way.map(|w| w / distance);
+    let displacement = [0, 1].map(|axis| discs[0].position[axis] - discs[1].position[axis]);
+    let distance = displacement[0].hypot(displacement[1]);
+    let n = displacement.map(|w| w / distance);
     let v = [0, 1].map(|axis| discs[0].velocity[axis] - discs[1].velocity[axis]);
     (RADII[0] + RADII[1] - distance, n, [v[0] * n[0] + v[1] * n[1], v[1] * n[0] - v[0] * n[1]])
 }

@@ -257,10 +257,11 @@ fn work_of_gravity_and_walls_is_counted() {
             for (number, (a, b)) in start.grains().iter().zip(now.grains()).enumerate() {
                 for axis in 0..2 {
                     let periods = crossings.get(number).map_or(0.0, |periods| periods[axis]);
-                    let way = b.position[axis] - a.position[axis] + periods * checked.domain.length(axis);
+                    let displacement =
+                        b.position[axis] - a.position[axis] + periods * checked.domain.length(axis);
                     let pulled = checked.scene.domain.gravity[axis];
                     if pulled != 0.0 {
-                        work += b.mass * pulled * way;
+                        work += b.mass * pulled * displacement;
                     }
                 }
             }

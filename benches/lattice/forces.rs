@@ -3,7 +3,7 @@
 //! The sweep is branch-free, so its cost does not depend on the positions of the discs: a frozen dense configuration suffices.
 //! Throughput is in cells; `cargo bench --bench lattice forces`.
 
-use crate::intrinsics::{self, Numbers, Place, Vectors};
+use crate::intrinsics::{self, MaskNeighbour, Numbers, Vectors};
 use crate::scenery::{CONTACT, dense, programs_of, warm_up};
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput};
@@ -14,13 +14,13 @@ use stripmine_kernels::isa::Array;
 use stripmine_kernels::{Execution, InstructionSet};
 use stripmine_physics::method::lattice_md::{ContactWatch, GranularModel, Part, ProgramArrays, execute};
 
-fn places<T: Precision>(model: &GranularModel) -> Vec<Place<T>> {
-    let place = |offset: &stripmine_kernels::mask::Offset| {
-        let way =
+fn neighbours<T: Precision>(model: &GranularModel) -> Vec<MaskNeighbour<T>> {
+    let neighbour = |offset: &stripmine_kernels::mask::Offset| {
+        let displacement =
             [f64::from(offset.columns) * model.frame.edge[0], f64::from(offset.rows) * model.frame.edge[1]];
-        (model.shape.shift(*offset), way.map(T::from_f64))
+        (model.shape.shift(*offset), displacement.map(T::from_f64))
     };
-    model.mask.offsets().iter().map(place).collect()
+    model.mask.offsets().iter().map(neighbour).collect()
 }
 
 /// Runs the hand-written loop on the widest instruction set that it and this processor support.
@@ -29,7 +29,7 @@ trait ByHand: Precision {
         from: &Vectors<'_, Self>,
         to: [&mut [Self]; 3],
         range: std::ops::Range<usize>,
-        places: &[Place<Self>],
+        neighbours: &[MaskNeighbour<Self>],
         numbers: Numbers<Self>,
     ) -> bool;
 }
@@ -42,19 +42,19 @@ macro_rules! by_hand {
                 from: &Vectors<'_, Self>,
                 to: [&mut [Self]; 3],
                 range: std::ops::Range<usize>,
-                places: &[Place<Self>],
+                neighbours: &[MaskNeighbour<Self>],
                 numbers: Numbers<Self>,
             ) -> bool {
                 match InstructionSet::best() {
                     // SAFETY: the processor has the set; the lattice is padded for every shift of its mask.
                     #[cfg(target_arch = "x86_64")]
                     InstructionSet::Avx512 => unsafe {
-                        intrinsics::$avx512::<FRICTION>(from, to, range, places, numbers);
+                        intrinsics::$avx512::<FRICTION>(from, to, range, neighbours, numbers);
                     },
                     // SAFETY: as above.
                     #[cfg(target_arch = "x86_64")]
                     InstructionSet::Avx2 => unsafe {
-                        intrinsics::$avx2::<FRICTION>(from, to, range, places, numbers);
+                        intrinsics::$avx2::<FRICTION>(from, to, range, neighbours, numbers);
                     },
                     _ => return false,
                 }
@@ -94,12 +94,12 @@ fn hand_written<P: ByHand, const FRICTION: bool>(
         shear_damping: P::from_f64(CONTACT.shear_damping),
         friction: P::from_f64(CONTACT.friction),
     };
-    let places = places::<P>(model);
+    let neighbours = neighbours::<P>(model);
     let mut to = [(); 3].map(|()| vec![P::from_f64(0.0); model.shape.padded()]);
     let range = model.shape.swept();
     let mut sweep = || {
         let [fx, fy, torque] = &mut to;
-        P::sweep::<FRICTION>(&from, [fx, fy, torque], range.clone(), &places, numbers)
+        P::sweep::<FRICTION>(&from, [fx, fy, torque], range.clone(), &neighbours, numbers)
     };
     if !sweep() {
         return;
@@ -130,14 +130,15 @@ fn executions<P: ByHand>(criterion: &mut Criterion, precision: &str) {
         }
         let programs = programs_of::<P>(&model);
         let best = InstructionSet::best();
-        let mut ways: Vec<(String, Execution, InstructionSet)> = Vec::new();
-        ways.extend(
+        let mut configurations: Vec<(String, Execution, InstructionSet)> = Vec::new();
+        configurations.extend(
             InstructionSet::available()
                 .map(|set| (format!("chained {}", set.name()), Execution::Chained, set)),
         );
-        ways.extend([64, 256, 1024].map(|n| (format!("tape, strips of {n}"), Execution::Strip(n), best)));
-        ways.push(("tape, eager".to_owned(), Execution::Eager, best));
-        for (name, execution, set) in ways {
+        configurations
+            .extend([64, 256, 1024].map(|n| (format!("tape, strips of {n}"), Execution::Strip(n), best)));
+        configurations.push(("tape, eager".to_owned(), Execution::Eager, best));
+        for (name, execution, set) in configurations {
             let (memory, lengths) = arrays.memory();
             group.bench_function(name, |bencher| {
                 bencher.iter(|| execute(&programs, &[Part::Forces], &memory, lengths, execution, set));

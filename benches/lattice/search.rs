@@ -26,15 +26,15 @@ fn settled(particles: &Particles, grid: &CellGrid) -> (Vec<[usize; 2]>, [Vec<f64
         })
         .collect();
     discs.sort_by_key(|(cell, _)| (cell[1], cell[0]));
-    let place =
+    let column =
         |axis: usize| discs.iter().map(|disc| disc.1[axis]).chain([0.0; SENTINELS]).collect::<Vec<f64>>();
-    (discs.iter().map(|disc| disc.0).collect(), [place(0), place(1)])
+    (discs.iter().map(|disc| disc.0).collect(), [column(0), column(1)])
 }
 
-fn all<F: Finder<f64, f64>>(finder: &F, places: [&[f64]; 2], found: &mut F::Found) {
+fn all<F: Finder<f64, f64>>(finder: &F, positions: [&[f64]; 2], found: &mut F::Found) {
     let (rows, mut cursor) = (finder.rows().count, SearchCursor::at(0));
     while cursor.row() < rows {
-        finder.find(places, 0..rows, &mut cursor, found, InstructionSet::best()).expect("available");
+        finder.find(positions, 0..rows, &mut cursor, found, InstructionSet::best()).expect("available");
         black_box(&*found);
     }
 }

@@ -11,7 +11,7 @@ use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::neighbor_list::{CellOffsets, ListDiscs, NeighbourLists, sweep_lists};
 use stripmine_kernels::sweep::pair::{Pair, PairBody};
 use stripmine_kernels::{Execution, InstructionSet, Program};
-use support::{CONTACT, Case, System, all_ways, varying};
+use support::{CONTACT, Case, System, all_configurations, varying};
 
 const ASKED: ObservationRequest = ObservationRequest { watched: None, dissipation: true, energy: true };
 
@@ -52,8 +52,8 @@ fn by_pairs<L: Law<2>>(system: &System<f64, f64>, law: &L) -> Alone {
             for (axis, side) in sides.into_iter().enumerate() {
                 let period = side as f64 * system.frame.edge[axis];
                 if system.shape.periodic()[axis] {
-                    let way = bodies[0].position[axis] - bodies[1].position[axis];
-                    bodies[1].position[axis] += (way / period).round() * period;
+                    let displacement = bodies[0].position[axis] - bodies[1].position[axis];
+                    bodies[1].position[axis] += (displacement / period).round() * period;
                 }
             }
             let pair = Pair { bodies };
@@ -154,7 +154,7 @@ fn all_sweeps_give_power_energy_and_virial() {
         };
         agrees([power, fast.energy[0], fast.energy[1]], "fast");
         agrees(by_lists(&system, &case, &law), "lists");
-        for how in all_ways() {
+        for how in all_configurations() {
             agrees(on_lattice(&system, &case, &law, how), &format!("{how:?}"));
         }
     }

@@ -9,7 +9,7 @@ use stripmine_kernels::law::Law;
 use stripmine_kernels::law::granular::ContactArm;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::{Execution, InstructionSet};
-use support::{CONTACT, Case, System, all_ways, equal, varying};
+use support::{CONTACT, Case, System, all_configurations, equal, varying};
 
 const ORACLE: (Execution, InstructionSet) = (Execution::Chained, InstructionSet::Scalar);
 
@@ -27,7 +27,7 @@ fn whole_steps_agree<S: Precision, P: Precision, L: Law<2>, const VALUES: usize,
         system.bits()
     };
     let oracle = after(ORACLE);
-    for how in all_ways() {
+    for how in all_configurations() {
         assert!(after(how) == oracle, "{how:?} differs from the oracle for {case:?}");
     }
 }

@@ -11,7 +11,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 use support::{Case, System, equal};
 
 /// Executions that matter here; `identity.rs` compares the others.
-fn ways() -> [(Execution, InstructionSet); 2] {
+fn configurations() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
@@ -67,7 +67,7 @@ fn naive_cells(places: &[[f64; 2]], frame: LatticeFrame, case: &Case) -> Cells {
 fn indexed<S: Precision>(case: &Case, frame: LatticeFrame, places: &[[f64; 2]]) -> System<S, f64> {
     let discs: Vec<_> = places.iter().map(|&[x, y]| PairBody::at(x, y)).collect();
     let law = equal::<false>(case.contact);
-    let [first, second] = ways().map(|how| {
+    let [first, second] = configurations().map(|how| {
         let mut system = System::<S, f64>::placed(case, frame, &discs);
         system.index(case, &law, how);
         system
@@ -299,7 +299,7 @@ fn positions_rounded_to_the_period_stay_inside() {
     let mut system = indexed::<f32>(&case, frame, &[[-1e-9, -1e-9]]);
     for _ in 0..3 {
         assert_eq!((system.strays, system.conflicts), (0, 0));
-        system.index(&case, &equal::<false>(case.contact), ways()[0]);
+        system.index(&case, &equal::<false>(case.contact), configurations()[0]);
     }
 }
 

@@ -33,15 +33,17 @@ impl Law<2> for Forgetful {
         env.own_position()
     }
 
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
-        let [dx, _] = env.displacement(*own, place);
+    fn pair<E: Env<2>>(&self, env: E, partner: E::Partner, own: &[E::V; 2]) {
+        let [dx, _] = env.displacement(*own, partner);
         env.own_add(ParticleSum::Force(Axis::X), dx);
         if self.hides && !self.tried.swap(true, Ordering::Relaxed) {
             return;
         }
         match self.torque {
             true => env.own_add(ParticleSum::Torque, dx),
-            false => env.own_add(ParticleSum::Force(Axis::Y), dx * env.partner(ParticleField::Radius, place)),
+            false => {
+                env.own_add(ParticleSum::Force(Axis::Y), dx * env.partner(ParticleField::Radius, partner))
+            }
         }
     }
 }
@@ -107,12 +109,12 @@ impl Law<3> for Dashpot {
         Axis::ALL.map(|axis| env.own(ParticleField::Velocity(axis)))
     }
 
-    fn pair<E: Env<3>>(&self, env: E, place: E::Place, own: &[E::V; 3]) {
+    fn pair<E: Env<3>>(&self, env: E, partner: E::Partner, own: &[E::V; 3]) {
         for axis in Axis::ALL {
-            let force = env.partner(ParticleField::Velocity(axis), place) - own[axis as usize];
+            let force = env.partner(ParticleField::Velocity(axis), partner) - own[axis as usize];
             env.own_add(ParticleSum::Force(axis), force);
             if E::BOTH_PARTNERS {
-                env.partner_sub(ParticleSum::Force(axis), place, force);
+                env.partner_sub(ParticleSum::Force(axis), partner, force);
             }
         }
         if self.turns {
@@ -138,7 +140,7 @@ impl InSpace {
 
 impl Env<3> for &InSpace {
     type V = f64;
-    type Place = ();
+    type Partner = ();
     const BOTH_PARTNERS: bool = true;
 
     fn own_position(self) -> [f64; 3] {
@@ -211,7 +213,7 @@ fn planar_laws_cannot_read_z() {
         fn own<E: Env<2>>(&self, env: E) -> E::V {
             env.own(ParticleField::Velocity(Axis::Z))
         }
-        fn pair<E: Env<2>>(&self, env: E, _: E::Place, own: &E::V) {
+        fn pair<E: Env<2>>(&self, env: E, _: E::Partner, own: &E::V) {
             env.own_add(ParticleSum::Force(Axis::X), *own);
         }
     }
@@ -255,8 +257,8 @@ fn spring_energy_and_virial_match_the_force() {
             continue;
         }
         touching += 1;
-        let way = [0, 1].map(|axis| pair.bodies[0].position[axis] - pair.bodies[1].position[axis]);
-        let by_force = way[0] * force[0] + way[1] * force[1];
+        let displacement = [0, 1].map(|axis| pair.bodies[0].position[axis] - pair.bodies[1].position[axis]);
+        let by_force = displacement[0] * force[0] + displacement[1] * force[1];
         assert!((virial - by_force).abs() < 1e-12 * by_force.abs().max(1.0), "{virial} {by_force}");
         for axis in 0..2 {
             let h = 1e-6;

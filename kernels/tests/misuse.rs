@@ -14,7 +14,7 @@ const COUNTED: LaneCounter = LaneCounter(2);
 const BEST: fn() -> InstructionSet = InstructionSet::best;
 
 /// Executions that differ in how they access memory.
-fn ways() -> impl Iterator<Item = (Execution, InstructionSet)> {
+fn configurations() -> impl Iterator<Item = (Execution, InstructionSet)> {
     [Execution::Chained, Execution::Strip(5), Execution::Eager]
         .into_iter()
         .flat_map(|execution| [InstructionSet::Scalar, BEST()].map(|set| (execution, set)))
@@ -74,7 +74,7 @@ fn refused<T: Kernel<Lane = f64>>(
 /// Control of the tests below: without an error, the same kernel writes and counts in every execution.
 #[test]
 fn valid_kernels_run_in_every_execution() {
-    for (execution, set) in ways() {
+    for (execution, set) in configurations() {
         let mut arrays = Touched::new(32, 32, 32);
         let memory = arrays.memory();
         Program::new(Touch).run(&memory, 3..30, execution, set).unwrap();
@@ -89,7 +89,7 @@ fn valid_kernels_run_in_every_execution() {
 /// The error names an unbound array with the requested element type; a slice of another type is no substitute.
 #[test]
 fn errors_name_unbound_arrays() {
-    for (execution, set) in ways() {
+    for (execution, set) in configurations() {
         let error = Program::new(Touch).run(&Memory::new(), 0..0, execution, set).unwrap_err();
         assert_eq!(error, ProgramError::Unbound { array: "Fy", element: "f64" });
         assert_eq!(error.to_string(), "array Fy (f64) is not bound to a slice; bind it before the run");
@@ -106,7 +106,7 @@ fn errors_name_unbound_arrays() {
 /// An array that is written must be bound for writing, for stores and for scatters.
 #[test]
 fn writes_to_read_only_arrays_are_rejected() {
-    for (execution, set) in ways() {
+    for (execution, set) in configurations() {
         let (x, fx, mut fy) = (vec![1.0; 32], vec![-7.0; 32], vec![-7.0; 32]);
         let memory = Memory::new().read(X, &x).read(FX, &fx).write(FY, &mut fy);
         let error = Program::new(Touch).run(&memory, 3..30, execution, set).unwrap_err();
@@ -128,26 +128,26 @@ fn writes_to_read_only_arrays_are_rejected() {
 /// Shifts before the first or behind the last element are rejected, with the exact elements.
 #[test]
 fn too_short_arrays_are_rejected_exactly() {
-    let range = |start: usize, end: usize, arrays: [usize; 3], way| {
+    let range = |start: usize, end: usize, arrays: [usize; 3], configuration| {
         let [x, fx, fy] = arrays;
-        refused(Touch, &mut Touched::new(x, fx, fy), start..end, way)
+        refused(Touch, &mut Touched::new(x, fx, fy), start..end, configuration)
     };
-    for way in ways() {
+    for configuration in configurations() {
         // x is read from 3 before to 2 behind.
-        let error = range(2, 8, [10, 10, 10], way);
+        let error = range(2, 8, [10, 10, 10], configuration);
         assert_eq!(error, ProgramError::TooShort { array: "x", first: -1, last: 9, length: 10 });
         assert_eq!(error.to_string(), "x has 10 elements, but the kernel touches elements -1 to 9");
-        let error = range(3, 9, [10, 10, 10], way);
+        let error = range(3, 9, [10, 10, 10], configuration);
         assert_eq!(error, ProgramError::TooShort { array: "x", first: 0, last: 10, length: 10 });
-        let error = range(3, 8, [10, 7, 8], way);
+        let error = range(3, 8, [10, 7, 8], configuration);
         assert_eq!(error, ProgramError::TooShort { array: "Fx", first: 3, last: 7, length: 7 });
-        let error = range(3, 8, [10, 8, 0], way);
+        let error = range(3, 8, [10, 8, 0], configuration);
         assert_eq!(error, ProgramError::TooShort { array: "Fy", first: 3, last: 7, length: 0 });
         // The exact size suffices, and an empty range touches nothing.
         for (range, written) in [(3..8, 5), (0..0, 0), (500..500, 0)] {
             let mut arrays = Touched::new(10, 8, 8);
             let memory = arrays.memory();
-            Program::new(Touch).run(&memory, range, way.0, way.1).unwrap();
+            Program::new(Touch).run(&memory, range, configuration.0, configuration.1).unwrap();
             assert_eq!(memory.counted(COUNTED), written);
         }
     }
@@ -243,25 +243,25 @@ fn through(
 #[test]
 fn an_index_vector_numbers_elements_from_one() {
     let cell = [8, 1, 0, 3, 0, 2, 2, 8, 1, 5, 0];
-    for way in ways() {
-        let (fx, _) = through(Through::Gather, &cell, 8, way).unwrap();
+    for configuration in configurations() {
+        let (fx, _) = through(Through::Gather, &cell, 8, configuration).unwrap();
         let expected = cell.map(|number| if number == 0 { -1.0 } else { 9.0 + f64::from(number) });
-        assert_eq!(fx, expected, "{way:?}");
-        let (fx, _) = through(Through::GatherIndex, &cell, 8, way).unwrap();
+        assert_eq!(fx, expected, "{configuration:?}");
+        let (fx, _) = through(Through::GatherIndex, &cell, 8, configuration).unwrap();
         assert_eq!(
             fx,
             cell.map(|number| if number == 0 { 0.0 } else { 99.0 + f64::from(number) }),
-            "{way:?}"
+            "{configuration:?}"
         );
-        let (_, index) = through(Through::Scatter, &cell, 8, way).unwrap();
-        assert_eq!(index, [9, 7, 4, 103, 10, 105, 106, 8], "{way:?}");
+        let (_, index) = through(Through::Scatter, &cell, 8, configuration).unwrap();
+        assert_eq!(index, [9, 7, 4, 103, 10, 105, 106, 8], "{configuration:?}");
     }
 }
 
 /// A wrong entry anywhere panics with the element (from 0) and the length; nothing is read or written out of bounds.
 #[test]
 fn wrong_indices_panic_with_element_and_length() {
-    for way in ways() {
+    for configuration in configurations() {
         for (text, what, why) in [
             (Through::Gather, "gather from", "the array has 8 elements"),
             (Through::GatherIndex, "gather from", "the array has 8 elements"),
@@ -271,11 +271,11 @@ fn wrong_indices_panic_with_element_and_length() {
                 for at in [0, 1, 6, 16, 36] {
                     let mut cell = vec![3; 37];
                     cell[at] = wrong;
-                    let message = through(text, &cell, 8, way).unwrap_err();
+                    let message = through(text, &cell, 8, configuration).unwrap_err();
                     assert_eq!(
                         message,
                         format!("{what} element {}, but {why}", wrong - 1),
-                        "{text:?} {way:?}"
+                        "{text:?} {configuration:?}"
                     );
                 }
             }
@@ -286,9 +286,13 @@ fn wrong_indices_panic_with_element_and_length() {
 /// An empty array has no element to gather: an entry that numbers one panics in every execution.
 #[test]
 fn gathering_from_empty_arrays_panics() {
-    for way in ways() {
-        assert_eq!(through(Through::Gather, &[0, 0, 0], 0, way).unwrap().0, [-1.0; 3]);
-        let message = through(Through::Gather, &[0, 1, 0], 0, way);
-        assert_eq!(message, Err("gather from element 0, but the array has 0 elements".to_owned()), "{way:?}");
+    for configuration in configurations() {
+        assert_eq!(through(Through::Gather, &[0, 0, 0], 0, configuration).unwrap().0, [-1.0; 3]);
+        let message = through(Through::Gather, &[0, 1, 0], 0, configuration);
+        assert_eq!(
+            message,
+            Err("gather from element 0, but the array has 0 elements".to_owned()),
+            "{configuration:?}"
+        );
     }
 }

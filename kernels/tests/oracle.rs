@@ -11,7 +11,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, varying};
 
 /// Executions that matter here; `identity.rs` compares the others.
-fn ways() -> [(Execution, InstructionSet); 2] {
+fn configurations() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
@@ -178,7 +178,7 @@ fn compare<L: Law<2> + Sync>(case: &Case, law: &L, all_alike: bool, friction: bo
         ParticleSum::PLANAR
             .map(|sum| forces.iter().map(|force| force[sum.column::<2>()]).collect::<Vec<f64>>())
     };
-    for forces in ways().map(faithful).into_iter().chain([fast]) {
+    for forces in configurations().map(faithful).into_iter().chain([fast]) {
         for &sum in L::SUMS {
             let found = &forces[sum.column::<2>()];
             let rms = (expected.iter().map(|f| f[sum.column::<2>()].powi(2)).sum::<f64>()

@@ -12,7 +12,7 @@ use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, contacts, random_pairs, varying};
 
 /// Executions that matter here; `identity.rs` compares the others.
-fn ways() -> [(Execution, InstructionSet); 2] {
+fn configurations() -> [(Execution, InstructionSet); 2] {
     [InstructionSet::Scalar, InstructionSet::best()].map(|set| (Execution::Chained, set))
 }
 
@@ -51,7 +51,8 @@ fn action_equals_reaction_to_the_bit() {
             for body in &mut pair.bodies {
                 body.position = [0, 1].map(|axis| body.position[axis] + (to[axis] - from[axis]));
             }
-            let [([first, second], seam), other] = ways().map(|how| pair_on_the_lattice(contact, pair, how));
+            let [([first, second], seam), other] =
+                configurations().map(|how| pair_on_the_lattice(contact, pair, how));
             assert_eq!(([first, second], seam), other);
             assert!(first[0] != 0.0 || first[1] != 0.0 || contact.cohesionless, "{pair:?}");
             for axis in 0..2 {
@@ -71,7 +72,7 @@ fn lattice_pairs_match_free_pairs() {
         for mut pair in random_pairs(3, 50) {
             pair.bodies.iter_mut().for_each(|body| body.position[1] += 6.0);
             let expected = pair.sums(&varying::<true>(contact));
-            let (found, _) = pair_on_the_lattice(contact, pair, ways()[1]);
+            let (found, _) = pair_on_the_lattice(contact, pair, configurations()[1]);
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                 assert!((found - expected).abs() < 1e-11, "{found} for {expected}");
             }
@@ -86,8 +87,8 @@ fn the_total_force_of_a_system_is_zero() {
         let case = Case { periodic, ..Case::new(30, 20) };
         let law = varying::<true>(case.contact);
         let mut system = System::<f64, f64>::random(&case);
-        system.index(&case, &law, ways()[1]);
-        system.forces(&case, &law, ways()[1]).unwrap();
+        system.index(&case, &law, configurations()[1]);
+        system.forces(&case, &law, configurations()[1]).unwrap();
         for sum in [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y)] {
             let forces = system.on_discs(sum);
             let (total, scale) = (forces.iter().sum::<f64>(), forces.iter().map(|f| f.abs()).sum::<f64>());

@@ -17,7 +17,7 @@ use stripmine_kernels::sweep::lattice::cells::CheckIndex;
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::{Coordinates, LatticeFrame};
 use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
-use support::{CONTACT, Case, DT, LATTICE, System, all_ways, varying};
+use support::{CONTACT, Case, DT, LATTICE, System, all_configurations, varying};
 
 type Discs = System<f64, f64>;
 type Way = (Execution, InstructionSet);
@@ -50,12 +50,12 @@ fn unscaled(mut system: Discs) -> Discs {
     system
 }
 
-fn run(system: &mut Discs, way: Way, programs: &[(&dyn Runnable, Length)]) {
+fn run(system: &mut Discs, configuration: Way, programs: &[(&dyn Runnable, Length)]) {
     let (halo, constant) = system.constants();
     let lengths = [0..system.discs, 0..system.shape.padded(), system.shape.swept(), 0..halo[0].len()];
     system.memory(&halo, &constant, |memory: &Memory<'_>| {
         for (program, length) in programs {
-            program.run(memory, lengths[*length as usize].clone(), way.0, way.1).unwrap();
+            program.run(memory, lengths[*length as usize].clone(), configuration.0, configuration.1).unwrap();
         }
     });
 }
@@ -68,11 +68,11 @@ enum Length {
     Halo,
 }
 
-fn map(system: &mut Discs, way: Way) {
+fn map(system: &mut Discs, configuration: Way) {
     let (shape, frame) = (system.shape, system.frame);
     run(
         system,
-        way,
+        configuration,
         &[
             (&Program::new(IntoBox::<f64>::new(shape, frame)), Length::Discs),
             (&Program::new(PrintedClear::<f64>::default()), Length::Padded),
@@ -85,19 +85,23 @@ fn map(system: &mut Discs, way: Way) {
     assert_eq!((system.strays, system.conflicts), (0, 0));
 }
 
-fn sum(system: &mut Discs, case: &Case, way: Way) {
+fn sum(system: &mut Discs, case: &Case, configuration: Way) {
     let mask = Mask::square(case.half_width);
     let law = Printed { contact: case.contact };
     let forces = Forces::<f64, _>::new(law, &mask, system.shape, system.frame, Coordinates::Absolute);
-    run(system, way, &[(&Program::new(forces), Length::Swept)]);
+    run(system, configuration, &[(&Program::new(forces), Length::Swept)]);
 }
 
-fn step<const VALUES: usize>(system: &mut Discs, case: &Case, way: Way) {
-    run(system, way, &[(&Program::new(PrintedPredictor::<f64, VALUES, 3>::new(DT)), Length::Discs)]);
-    map(system, way);
-    sum(system, case, way);
+fn step<const VALUES: usize>(system: &mut Discs, case: &Case, configuration: Way) {
+    run(
+        system,
+        configuration,
+        &[(&Program::new(PrintedPredictor::<f64, VALUES, 3>::new(DT)), Length::Discs)],
+    );
+    map(system, configuration);
+    sum(system, case, configuration);
     let corrector = PrintedCorrector::<f64, f64, VALUES, 3>::new(DT, Acceleration::OfVelocities, GRAVITY);
-    run(system, way, &[(&Program::new(corrector), Length::Discs)]);
+    run(system, configuration, &[(&Program::new(corrector), Length::Discs)]);
 }
 
 #[test]
@@ -105,15 +109,18 @@ fn printed_steps_are_bit_equal_in_every_execution() {
     for periodic in sides() {
         for fill in [0.0, 0.4, 1.0] {
             let case = Case { fill, ..case(periodic, 1) };
-            let after = |way| {
+            let after = |configuration| {
                 let mut system = unscaled(Discs::random(&case));
-                step::<4>(&mut system, &case, way);
-                step::<6>(&mut system, &case, way);
+                step::<4>(&mut system, &case, configuration);
+                step::<6>(&mut system, &case, configuration);
                 system.bits()
             };
             let oracle = after(ORACLE);
-            for way in all_ways() {
-                assert!(after(way) == oracle, "{way:?} differs from the oracle for {case:?}");
+            for configuration in all_configurations() {
+                assert!(
+                    after(configuration) == oracle,
+                    "{configuration:?} differs from the oracle for {case:?}"
+                );
             }
         }
     }
@@ -206,16 +213,16 @@ fn products_equal_branches_to_the_bit() {
 /// Our kernel sums the same forces with another order of operations.
 #[test]
 fn printed_forces_match_ours_up_to_rounding() {
-    let way = (Execution::Chained, InstructionSet::best());
+    let configuration = (Execution::Chained, InstructionSet::best());
     for (seed, periodic) in (0..20).flat_map(|seed| sides().map(|periodic| (seed, periodic))) {
         let case = case(periodic, seed);
         let start = Discs::random(&case);
         let mut ours = start.clone();
-        ours.index(&case, &varying::<true>(LAW), way);
-        ours.forces(&case, &varying::<true>(LAW), way).unwrap();
+        ours.index(&case, &varying::<true>(LAW), configuration);
+        ours.forces(&case, &varying::<true>(LAW), configuration).unwrap();
         let mut printed = unscaled(start);
-        map(&mut printed, way);
-        sum(&mut printed, &case, way);
+        map(&mut printed, configuration);
+        sum(&mut printed, &case, configuration);
         for force in [ParticleSum::Force(Axis::X), ParticleSum::Force(Axis::Y), ParticleSum::Torque] {
             let (ours, printed) = (ours.on_discs(force), printed.on_discs(force));
             let rms = (ours.iter().map(|f| f * f).sum::<f64>() / ours.len() as f64).sqrt();
@@ -232,7 +239,7 @@ fn printed_forces_match_ours_up_to_rounding() {
 fn printed_steps_match_ours_up_to_rounding() {
     use stripmine_kernels::integrator::Inertia;
     fn beside<const VALUES: usize>(case: &Case) {
-        let way = (Execution::Chained, InstructionSet::best());
+        let configuration = (Execution::Chained, InstructionSet::best());
         let mut ours = Discs::random(case);
         for row in &mut ours.state {
             row[VALUES..].iter_mut().flatten().for_each(|q| *q = 0.0);
@@ -241,8 +248,8 @@ fn printed_steps_match_ours_up_to_rounding() {
         let at_start = ours.state.clone();
         for _ in 0..10 {
             let law = varying::<true>(LAW);
-            ours.step::<_, VALUES, 3>(case, &law, Inertia::Varying, way);
-            step::<VALUES>(&mut printed, case, way);
+            ours.step::<_, VALUES, 3>(case, &law, Inertia::Varying, configuration);
+            step::<VALUES>(&mut printed, case, configuration);
         }
         let mut moved = 0.0f64;
         for (row, (ours, printed)) in ours.state.iter().zip(&printed.state).enumerate() {
@@ -420,15 +427,15 @@ fn every_position_in_the_box_has_a_cell() {
 fn printed_observations_match_ours() {
     use stripmine_kernels::law::ObservationRequest;
     let case = case([true, true], 11);
-    let way = (Execution::Chained, InstructionSet::best());
+    let configuration = (Execution::Chained, InstructionSet::best());
     let asked = ObservationRequest { watched: None, dissipation: true, energy: true };
     let mut ours = Discs::random(&case);
-    ours.index(&case, &varying::<true>(LAW), way);
-    ours.forces_and(&case, &varying::<true>(LAW), way, asked).unwrap();
+    ours.index(&case, &varying::<true>(LAW), configuration);
+    ours.forces_and(&case, &varying::<true>(LAW), configuration, asked).unwrap();
     let mut printed = unscaled(Discs::random(&case));
-    map(&mut printed, way);
+    map(&mut printed, configuration);
     let law = Printed { contact: LAW };
-    printed.forces_and(&case, &law, way, asked).unwrap();
+    printed.forces_and(&case, &law, configuration, asked).unwrap();
     let total = |column: &[f64]| -> f64 { printed.cell.iter().map(|&cell| column[cell as usize - 1]).sum() };
     for (kind, (ours, printed)) in ours.observed.iter().zip(&printed.observed).enumerate() {
         let (ours, printed) = (total(ours), total(printed));

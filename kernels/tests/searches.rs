@@ -72,8 +72,9 @@ fn found<F: Finder<f64, f64>>(finder: &F, places: &[Vec<f64>; 2]) -> Found {
             finder.find(columns, band.clone(), &mut cursor, &mut list, InstructionSet::best()).unwrap();
             let pairs = finder.pairs(&list);
             for number in 0..pairs.count() {
-                let ([a, b], way) = pairs.pair(number);
-                let to = [0, 1].map(|axis| places[axis][b as usize] - places[axis][a as usize] + way[axis]);
+                let ([a, b], configuration) = pairs.pair(number);
+                let to = [0, 1]
+                    .map(|axis| places[axis][b as usize] - places[axis][a as usize] + configuration[axis]);
                 let (pair, to) = if a < b { ([a, b], to) } else { ([b, a], to.map(|along| -along)) };
                 assert!(all.insert(pair, to).is_none(), "{pair:?} found twice");
             }
@@ -87,12 +88,12 @@ fn naive(positions: &[[f64; 2]], sides: [f64; 2], periodic: [bool; 2], reach: f6
     let mut pairs = Found::new();
     for (a, from) in positions.iter().enumerate() {
         for (b, to) in positions.iter().enumerate().skip(a + 1) {
-            let way = [0, 1].map(|axis| {
+            let configuration = [0, 1].map(|axis| {
                 let along = to[axis] - from[axis];
                 if periodic[axis] { along - sides[axis] * (along / sides[axis]).round() } else { along }
             });
-            if way[0].hypot(way[1]) < reach {
-                pairs.insert([a as u32, b as u32], way);
+            if configuration[0].hypot(configuration[1]) < reach {
+                pairs.insert([a as u32, b as u32], configuration);
             }
         }
     }
@@ -100,9 +101,12 @@ fn naive(positions: &[[f64; 2]], sides: [f64; 2], periodic: [bool; 2], reach: f6
 }
 
 fn assert_same(found: &Found, expected: &Found, reach: f64) {
-    for (pair, way) in expected {
+    for (pair, configuration) in expected {
         let there = found.get(pair).unwrap_or_else(|| panic!("{pair:?} not found"));
-        assert!((0..2).all(|axis| (there[axis] - way[axis]).abs() < 1e-9), "{pair:?}: {there:?} for {way:?}");
+        assert!(
+            (0..2).all(|axis| (there[axis] - configuration[axis]).abs() < 1e-9),
+            "{pair:?}: {there:?} for {configuration:?}"
+        );
     }
     for (pair, [x, y]) in found {
         assert!(x.hypot(*y) < 1.001 * reach, "{pair:?} is far: {x}, {y}");
@@ -291,7 +295,7 @@ fn joint_searches_are_bit_equal_to_serial_ones() {
                 let counted = Counted(&sectors, AtomicUsize::new(0));
                 let mut sweep = Sweep::new(counted.rows());
                 let discs_of = DiscColumns {
-                    place: [&places[0], &places[1]],
+                    position: [&places[0], &places[1]],
                     velocity: [&[], &[]],
                     omega: &[],
                     per_time: 1.0,

@@ -133,7 +133,7 @@ fn trajectory_difference(
     for particle in one.all() {
         let Some(twin) = by_id.get(&particle.id) else { continue };
         seen.particles += 1;
-        let length = |way: [f64; 3]| way.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let length = |vector: [f64; 3]| vector.iter().map(|x| x * x).sum::<f64>().sqrt();
         let apart = length(domain.displacement(particle.position, twin.position));
         let faster = length([0, 1, 2].map(|axis| twin.velocity[axis] - particle.velocity[axis]));
         if apart > seen.position {

@@ -49,8 +49,8 @@ impl ParticleState {
     /// Root mean square distance between the particles of two states, and the largest (length).
     pub(super) fn distance(&self, other: &ParticleState, domain: &Domain) -> [f64; 2] {
         let squares = self.0.iter().zip(&other.0).map(|(a, b)| {
-            let way = domain.displacement(a.position, b.position);
-            way.iter().map(|part| part * part).sum::<f64>()
+            let displacement = domain.displacement(a.position, b.position);
+            displacement.iter().map(|part| part * part).sum::<f64>()
         });
         let (sum, largest) = squares.fold((0.0, 0.0), |(sum, largest): (f64, f64), square| {
             // NaN counts as the largest distance.
@@ -92,9 +92,9 @@ impl ParticleState {
     /// exactly two.
     pub(super) fn pair(&self, domain: &Domain) -> Option<([f64; 2], f64)> {
         let [a, b] = self.0.as_slice() else { return None };
-        let way = domain.displacement(a.position, b.position);
+        let displacement = domain.displacement(a.position, b.position);
         let relative = [0, 1].map(|axis| b.velocity[axis] - a.velocity[axis]);
-        Some((relative, way[0].hypot(way[1]) - a.radius - b.radius))
+        Some((relative, displacement[0].hypot(displacement[1]) - a.radius - b.radius))
     }
 }
 
@@ -108,8 +108,8 @@ pub(crate) fn displaced(
     for (i, grain) in
         moved.all_mut().iter_mut().enumerate().filter(|(_, grain)| grain.kind == ParticleKind::Grain)
     {
-        let way = by(i, grain);
-        let position = [0, 1].map(|axis| grain.position[axis] + way[axis]);
+        let displacement = by(i, grain);
+        let position = [0, 1].map(|axis| grain.position[axis] + displacement[axis]);
         grain.position = in_space(domain.wrapped(position));
     }
     moved

@@ -3,6 +3,8 @@
 //!
 //! The test is its own command: with an environment variable set, it carries out its arguments with that list of methods.
 
+#[path = "../promises/configurations.rs"]
+mod configurations;
 #[path = "../promises/files.rs"]
 mod files;
 mod free_flight;
@@ -10,8 +12,6 @@ mod free_flight;
 mod short;
 #[path = "../promises/table.rs"]
 mod table;
-#[path = "../promises/ways.rs"]
-mod ways;
 
 use std::path::Path;
 use std::process::{Command, ExitCode, Output};

@@ -1,6 +1,6 @@
 //! Few particles in every kind of box, resumed at random moments: the state and all observables are those of a run in one piece.
 
-use super::ways::ways;
+use super::configurations::configurations;
 use rand::RngExt;
 use std::fmt::Write;
 use std::fs;
@@ -58,16 +58,17 @@ pub fn hold(times: usize) -> [usize; 2] {
     let mut held = [0; 2];
     for (method, scene, count) in METHOD_SCENES {
         let entry = METHODS.iter().find(|entry| entry.vocabulary.keys.method == method).expect("a method");
-        let ways = ways(entry, &CHOICES);
+        let configurations = configurations(entry, &CHOICES);
         for _ in 0..count * times {
             let text = scene(&mut stream);
             fs::write(&path, &text).expect("a temporary folder");
-            for way in &ways {
-                let Ok((prepared, _)) = load(path.to_str().expect("a plain path"), way, METHODS) else {
+            for configuration in &configurations {
+                let Ok((prepared, _)) = load(path.to_str().expect("a plain path"), configuration, METHODS)
+                else {
                     continue;
                 };
                 held[0] += 1;
-                held[1] += resumed(&prepared, &mut stream, &format!("{way:?}\n{text}"));
+                held[1] += resumed(&prepared, &mut stream, &format!("{configuration:?}\n{text}"));
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Promises of every method, with every engine, for every file, however often a run is stopped.
 
+mod configurations;
 mod few;
 mod files;
 mod short;
 mod table;
-mod ways;
 
 use std::process::Command;
 use stripmine_physics::method::METHODS;

@@ -3,9 +3,9 @@
 //! A shortened scene is run whole; interrupted at random moments and resumed; killed and resumed. Every file has
 //! as many frames and rows as the scene states, ends with the final state, and has the same bytes each time; so has the summary, except for times.
 
+use super::configurations::configurations;
 use super::files::{GsdFrame, Places, TextFrame, dcd, extended_xyz, gsd, lammps_dump, table};
 use super::short::{end_of, moments, shortened};
-use super::ways::ways;
 use rand::RngExt;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -98,17 +98,17 @@ impl Held {
 
 /// Every preset of a method, with every engine and every search that the scene allows.
 fn cases(methods: Methods, entry: &'static MethodEntry, extent: Extent) -> Vec<Case> {
-    let ways = ways(entry, &[("machine", "precision")]);
+    let configurations = configurations(entry, &[("machine", "precision")]);
     let (mut cases, mut seen) = (vec![], BTreeSet::new());
     for preset in entry.vocabulary.presets {
         let short = shortened(methods, entry, preset.name);
         let mut scenes = BTreeSet::new();
-        for way in &ways {
-            let overrides = [short.clone(), way.clone()].concat();
+        for configuration in &configurations {
+            let overrides = [short.clone(), configuration.clone()].concat();
             let Ok((prepared, _)) = load(preset.name, &overrides, methods) else { continue };
-            let is_plain = way.is_empty();
+            let is_plain = configuration.is_empty();
             let is_new = scenes.insert(prepared.scene);
-            if is_plain || is_new && (extent == Extent::Full || seen.insert(way.clone())) {
+            if is_plain || is_new && (extent == Extent::Full || seen.insert(configuration.clone())) {
                 cases.push(Case { entry, preset: preset.name, overrides, is_plain });
             }
         }
@@ -153,9 +153,9 @@ impl Case {
         let mut held = Held { runs: 1, sessions: 1, ..Held::default() };
         self.files(&prepared, &path, &mut held);
         let mut stream = Stream::new(self.label().len() as u64, Of::Test, 0);
-        let ways = if extent == Extent::Full { 20 } else { 1 };
-        for way in 0..ways {
-            let parts = folder.path().join(format!("parts{way}"));
+        let configurations = if extent == Extent::Full { 20 } else { 1 };
+        for configuration in 0..configurations {
+            let parts = folder.path().join(format!("parts{configuration}"));
             held.sessions += self.interrupted(&prepared, &parts, words, &mut stream);
             self.same("interrupted", &path, &parts);
             held.runs += 1;
@@ -249,13 +249,13 @@ impl Case {
     }
 
     /// Checks that files and summary of both runs are equal.
-    fn same(&self, way: &str, whole: &Path, parts: &Path) {
+    fn same(&self, configuration: &str, whole: &Path, parts: &Path) {
         for name in files() {
             let [one, other] = [whole, parts].map(|folder| fs::read(folder.join(name)).ok());
-            assert!(one == other, "{}: {name} differs, {way}", self.label());
+            assert!(one == other, "{}: {name} differs, {configuration}", self.label());
         }
         let [one, other] = [whole, parts].map(|folder| of_physics(summary(folder)));
-        assert_eq!(one, other, "{}: the summary differs, {way}", self.label());
+        assert_eq!(one, other, "{}: the summary differs, {configuration}", self.label());
     }
 
     /// Checks that a run has as many frames and rows as its scene states, and that the last ones show the end.

@@ -73,26 +73,26 @@ class Contest:
         """Rate in million particle-steps a second."""
         return 1e-6 * particles * self.steps / seconds
 
-    def held(self, ways):
+    def held(self, configurations):
         """Runs the contest and returns the figures of LAMMPS and of each of our configurations."""
         start = self.state(0)
         compared = {"apart": None, "moved": None}
         if self.particles <= COMPARED_DISCS:
             compared = self.lammps("compare", start, self.asked.skin[0], COMPARED, self.state(COMPARED))
-        theirs, mine, refused = {skin: [] for skin in self.asked.skin}, {way: [] for way in ways}, {}
+        theirs, mine, refused = {skin: [] for skin in self.asked.skin}, {configuration: [] for configuration in configurations}, {}
         for _ in range(self.asked.rounds):
             for skin in theirs:
                 theirs[skin].append(self.lammps("measure", start, skin, self.equilibration, self.steps))
-            for way in ways:
+            for configuration in configurations:
                 try:
-                    if way not in refused:
-                        mine[way].append(self.ours(*way))
+                    if configuration not in refused:
+                        mine[configuration].append(self.ours(*configuration))
                 except Refused as why:
-                    refused[way] = str(why)
+                    refused[configuration] = str(why)
         rates = {skin: [self.rate(r["seconds"], r["particles"]) for r in runs] for skin, runs in theirs.items()}
         skin = max(rates, key=lambda skin: statistics.median(rates[skin]))
         last = theirs[skin][-1]
-        own = [self.refusal(way, refused[way]) if way in refused else self.entry(way, mine[way], rates[skin]) for way in ways]
+        own = [self.refusal(configuration, refused[configuration]) if configuration in refused else self.entry(configuration, mine[configuration], rates[skin]) for configuration in configurations]
         return compared | {
             "packing_fraction": self.fraction,
             "particles": last["particles"],
@@ -103,16 +103,16 @@ class Contest:
             "ours": own,
         }
 
-    def refusal(self, way, why):
-        return dict(zip(("what", "precision", "integrator"), way)) | {"refused": why}
+    def refusal(self, configuration, why):
+        return dict(zip(("what", "precision", "integrator"), configuration)) | {"refused": why}
 
-    def entry(self, way, runs, rival_rates):
+    def entry(self, configuration, runs, rival_rates):
         """Entry of one of our configurations over the rounds, with the state after the last."""
         last = runs[-1]
         rates = [self.rate(r["cpu_seconds"], r["particles"]) for r in runs]
         # Phases are measured in wall time and scaled to processor time.
         each = 1e9 * last["cpu_seconds"] / last["seconds"] / (last["particles"] * self.steps)
-        return dict(zip(("what", "precision", "integrator"), way)) | {
+        return dict(zip(("what", "precision", "integrator"), configuration)) | {
             "execution": last["execution"],
             "instruction_set": last["instruction_set"],
             "rates": rates,

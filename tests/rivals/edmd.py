@@ -165,12 +165,12 @@ def held(edmd, asked, particles, fraction):
         theirs.append(edmd.measured(system, setting, seed, collisions))
         own.append(ours(asked.stripmine, particles, fraction, collisions))
     name = f"hard discs, ν = {fraction:.2f}"
-    way = f"f64, {own[0]['engine']}; the rival's shell {setting.shell}, block {setting.block}/N, horizon {setting.horizon}"
+    configuration = f"f64, {own[0]['engine']}; the rival's shell {setting.shell}, block {setting.block}/N, horizon {setting.horizon}"
     z, their_z = (statistics.median(found["compressibility"] for found in runs) for runs in (own, theirs))
     memory = {"system": name, "particles": system[0]}
     memory |= {who: runs[-1]["peak_memory_bytes"] for who, runs in (("ours", own), ("theirs", theirs))}
     return (
-        contest(name, system[0], way, [found["rate"] for found in own], [rate(found) for found in theirs]),
+        contest(name, system[0], configuration, [found["rate"] for found in own], [rate(found) for found in theirs]),
         same(f"{name}, {system[0]}: Z", z, their_z, WITHIN * (z - 1)),
         memory,
         own[0]["instruction_set"],

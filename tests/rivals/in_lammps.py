@@ -105,11 +105,11 @@ def compare(start, skin, steps, end):
     begin, _ = positions(start)
     here = machine.gather_atoms("x", 1, 3)
 
-    def way(a, b):
+    def difference(a, b):
         return math.hypot(*(d - side * round(d / side) for d, side in zip((a[0] - b[0], a[1] - b[1]), sides)))
 
     def far(others):
-        return max(way((here[3 * i], here[3 * i + 1]), others[i + 1]) for i in range(len(others)))
+        return max(difference((here[3 * i], here[3 * i + 1]), others[i + 1]) for i in range(len(others)))
 
     return {"apart": far(there), "moved": far(begin)}
 

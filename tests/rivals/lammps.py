@@ -61,10 +61,10 @@ def of_the_report(held, build):
         rival, system = it["lammps"], f"granular discs, packing fraction {it['packing_fraction']:.2f}"
         for own in (own for own in it["ours"] if "refused" not in own):
             sets.add(own["instruction_set"])
-            way = f"{own['what']} {own['precision']} {own['integrator']}"
-            contests.append(contest(system, it["particles"], way, own["rates"], rival["rates"]))
+            configuration = f"{own['what']} {own['precision']} {own['integrator']}"
+            contests.append(contest(system, it["particles"], configuration, own["rates"], rival["rates"]))
             # Trajectories soon diverge chaotically: temperatures and contacts agree as samples of one gas.
-            agreement.append(same(f"{system}, {it['particles']}, {way}: kT", own["temperature"], rival["temperature"], 1e-4))
+            agreement.append(same(f"{system}, {it['particles']}, {configuration}: kT", own["temperature"], rival["temperature"], 1e-4))
         if it["apart"] is not None:
             agreement.append(same(f"{system}, {it['particles']}: farthest apart after 300 steps", it["apart"], 0.0, 1e-6))
     return result("LAMMPS", held[0]["lammps"]["version"], build, ", ".join(sorted(sets)), UNIT, contests, agreement)
@@ -85,14 +85,14 @@ def main():
         print(f"skipped: LAMMPS is not available: {why}")
         return 0
     build = json.loads(run([python, "-I", str(IN_LAMMPS), "build"], variables))
-    ways = list(itertools.product(asked.what, asked.precision, asked.integrator))
+    configurations = list(itertools.product(asked.what, asked.precision, asked.integrator))
     results = []
     with tempfile.TemporaryDirectory(prefix="stripmine-rivals-") as folder:
         for fraction, particles in itertools.product(asked.packing_fraction, asked.particles):
             contest = Contest(asked, python, variables, pathlib.Path(folder), fraction, particles)
             print(f"packing fraction {fraction}, {particles} discs", file=sys.stderr, flush=True)
             try:
-                results.append(contest.held(ways))
+                results.append(contest.held(configurations))
             except (Refused, subprocess.TimeoutExpired) as why:
                 print(f"  left out: {why}", file=sys.stderr)
             # Intermediate results are written, in case a later measurement fails.

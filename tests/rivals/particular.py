@@ -55,8 +55,8 @@ def held(rival, stripmine, bodies, precision, rounds):
         call = [stripmine, "bench", "nbody", "--json", "--quiet", "--threads", 1, "--repeats", 3, "--particles", bodies]
         found = answer([*call, "--precision", OURS[precision]])
         ours.append(found["interactions_per_second_median"] / 1e9)
-    way = f"forces in {precision}, {found['arithmetic']} (the rival's error {error:.1e})"
-    return contest("all-pairs gravity", bodies, way, ours, theirs), found["instruction_set"]
+    configuration = f"forces in {precision}, {found['arithmetic']} (the rival's error {error:.1e})"
+    return contest("all-pairs gravity", bodies, configuration, ours, theirs), found["instruction_set"]
 
 
 def main():

@@ -10,9 +10,9 @@ import statistics
 import provenance
 
 
-def contest(system, particles, way, ours, theirs):
+def contest(system, particles, configuration, ours, theirs):
     ratios = [own / other for own, other in zip(ours, theirs)]
-    return {"system": system, "particles": particles, "way": way, "ours": ours, "theirs": theirs, "ratios": ratios}
+    return {"system": system, "particles": particles, "configuration": configuration, "ours": ours, "theirs": theirs, "ratios": ratios}
 
 
 def same(what, ours, theirs, within):
@@ -31,7 +31,7 @@ def shown(found):
     lines = [f"{found['rival']} {found['version']} ({found['build']}); {found['unit']}"]
     for it in found["contests"]:
         ours, theirs, ratio = (statistics.median(it[key]) for key in ("ours", "theirs", "ratios"))
-        lines.append(f"{it['system']}, {it['particles']}, {it['way']}: {ours:.3g} against {theirs:.3g}, ratio {ratio:.2f}")
+        lines.append(f"{it['system']}, {it['particles']}, {it['configuration']}: {ours:.3g} against {theirs:.3g}, ratio {ratio:.2f}")
     lines += [f"{it['what']}: {it['ours']:.6g} and {it['theirs']:.6g} (within {it['within']:.2g})" for it in found["same"]]
     return "\n".join(lines)
 

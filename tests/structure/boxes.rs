@@ -14,12 +14,12 @@ use stripmine_physics::structure::{
 struct Seeing {
     setting: StructureSetting,
     discs: Vec<Particle>,
-    ways: Vec<Vec<[f64; 2]>>,
+    displacements: Vec<Vec<[f64; 2]>>,
 }
 
 impl Seeing {
     fn distance(&self, a: usize, b: usize) -> f64 {
-        self.ways[a][b][0].hypot(self.ways[a][b][1])
+        self.displacements[a][b][0].hypot(self.displacements[a][b][1])
     }
 
     fn others(&self, own: usize) -> impl Iterator<Item = usize> + use<> {
@@ -37,7 +37,7 @@ impl Seeing {
         others.truncate(6);
         let share = 1.0 / others.len() as f64;
         others.iter().fold([0.0; 2], |[x, y], &other| {
-            let [right, up] = self.ways[own][other];
+            let [right, up] = self.displacements[own][other];
             let angle = 6.0 * up.atan2(right);
             [x + share * angle.cos(), y + share * angle.sin()]
         })
@@ -142,11 +142,12 @@ fn functions_agree_with_naive_sums() {
             disc.velocity = [random.random_range(-1.0..1.0), random.random_range(-0.5..1.5), 0.0];
         }
         let discs = particles.grains().to_vec();
-        let way = |a: &Particle, b: &Particle| {
+        let displacement = |a: &Particle, b: &Particle| {
             setting.domain.displacement(a.planar_position(), b.planar_position())
         };
-        let ways = discs.iter().map(|a| discs.iter().map(|b| way(a, b)).collect()).collect();
-        let seeing = Seeing { setting, discs, ways };
+        let displacements =
+            discs.iter().map(|a| discs.iter().map(|b| displacement(a, b)).collect()).collect();
+        let seeing = Seeing { setting, discs, displacements };
         for name in names.into_iter().chain(profiles) {
             if name == "S(k)" && setting.domain.periodic() == [false; 2] {
                 continue;

@@ -42,19 +42,19 @@ fn discs_are_followed_across_periodic_sides() {
             states.rows().iter().map(|row| [row[0], row[1]]).collect::<Vec<_>>()
         };
         let start = look(simulation.as_ref());
-        let (mut before, mut ways) = (start.clone(), vec![[0.0; 2]; grains]);
+        let (mut before, mut displacements) = (start.clone(), vec![[0.0; 2]; grains]);
         for step in 1..=STEPS {
             let until = if dt > 0.0 { Until::Time(dt * step as f64) } else { Until::Steps(10 * step) };
             simulation.advance(&[until], &AtomicBool::new(false)).unwrap();
             let now = look(simulation.as_ref());
-            for ((way, from), to) in ways.iter_mut().zip(&before).zip(&now) {
+            for ((displacement, from), to) in displacements.iter_mut().zip(&before).zip(&now) {
                 let moved = domain.displacement(*from, *to);
                 assert!(
                     (0..2)
                         .all(|axis| !domain.is_periodic(axis)
                             || moved[axis].abs() < 0.45 * domain.length(axis))
                 );
-                (0..2).for_each(|axis| way[axis] += moved[axis]);
+                (0..2).for_each(|axis| displacement[axis] += moved[axis]);
             }
             before = now;
             if step == RESUMED_AT {
@@ -66,12 +66,12 @@ fn discs_are_followed_across_periodic_sides() {
         let images = simulation.per_particle().images();
         assert_eq!(images.len(), prepared.particles().len(), "{named}");
         let mut crossed = 0;
-        for (grain, way) in ways.iter().enumerate() {
+        for (grain, displacement) in displacements.iter().enumerate() {
             for axis in 0..2 {
                 let side = if domain.is_periodic(axis) { domain.length(axis) } else { 0.0 };
                 let there = before[grain][axis] + f64::from(images[grain][axis]) * side;
                 assert!(
-                    (there - start[grain][axis] - way[axis]).abs() < 1e-6,
+                    (there - start[grain][axis] - displacement[axis]).abs() < 1e-6,
                     "{named}: grain {grain}, axis {axis}"
                 );
                 crossed += images[grain][axis].unsigned_abs();

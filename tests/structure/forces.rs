@@ -86,13 +86,13 @@ fn stress_is_the_sum_over_all_pairs() {
                 }
             }
             for (other, two) in all.iter().enumerate().skip(at + 1) {
-                let way = domain.displacement(one.planar_position(), two.planar_position());
+                let displacement = domain.displacement(one.planar_position(), two.planar_position());
                 let are_walls = one.kind == ParticleKind::Wall && two.kind == ParticleKind::Wall;
-                if way[0].hypot(way[1]) >= forces.reach || are_walls {
+                if displacement[0].hypot(displacement[1]) >= forces.reach || are_walls {
                     continue;
                 }
                 let turn = 0.3 + one.radius * two.radius + 0.1 * (one.omega + two.omega);
-                let [x, y] = way;
+                let [x, y] = displacement;
                 let square = x * x + y * y;
                 let force = [x / square - turn * y, y / square + turn * x];
                 [at, other].into_iter().for_each(|disc| on_each[disc] += force[0].hypot(force[1]));

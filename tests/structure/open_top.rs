@@ -104,16 +104,16 @@ fn ideal_gas_below_an_open_top_keeps_heights() {
             false => radius + (at as f64 + 0.5) / of as f64 * (length - 2.0 * radius),
         };
         let mut nearer = std::collections::HashMap::new();
-        let mut ways = |one: f64, other: f64| {
+        let mut distances = |one: f64, other: f64| {
             nearer
                 .entry([one.to_bits(), other.to_bits()])
                 .or_insert_with(|| {
                     let both = (0..400).flat_map(|a| (0..401).map(move |b| (a, b)));
-                    let way = |(a, b): (usize, usize)| {
-                        let way = (place(a, 400, one) - place(b, 401, other)).abs();
-                        if periodic[0] { way.min(length - way) } else { way }
+                    let distance = |(a, b): (usize, usize)| {
+                        let distance = (place(a, 400, one) - place(b, 401, other)).abs();
+                        if periodic[0] { distance.min(length - distance) } else { distance }
                     };
-                    let mut all: Vec<f64> = both.map(way).collect();
+                    let mut all: Vec<f64> = both.map(distance).collect();
                     all.sort_by(f64::total_cmp);
                     all
                 })
@@ -126,10 +126,10 @@ fn ideal_gas_below_an_open_top_keeps_heights() {
         for (number, one) in all.iter().enumerate() {
             for other in &all[number + 1..] {
                 let height = one.position[1] - other.position[1];
-                let ways = ways(one.radius, other.radius);
+                let distances = distances(one.radius, other.radius);
                 let within = |r: f64| {
                     let along = (r * r - height * height).max(0.0).sqrt();
-                    ways.partition_point(|way| *way < along) as f64 / ways.len() as f64
+                    distances.partition_point(|distance| *distance < along) as f64 / distances.len() as f64
                 };
                 for (bin, naive) in naive.iter_mut().enumerate() {
                     let [inner, outer] = [bin, bin + 1].map(|edge| within(10.0 * edge as f64 * width));

@@ -17,19 +17,19 @@ fn order_and_neighbours_agree_with_naive_search() {
     for periodic in [[true, true], [true, false], [false, false]] {
         let (setting, discs) = ideal(&mut random, [14.0, 11.0], periodic, 90);
         let discs_of = discs.grains();
-        let ways = |own: &Particle| -> Vec<[f64; 2]> {
+        let displacements = |own: &Particle| -> Vec<[f64; 2]> {
             let others = discs_of.iter().filter(|other| other.id != own.id);
-            let mut ways: Vec<[f64; 2]> = others
+            let mut displacements: Vec<[f64; 2]> = others
                 .map(|other| setting.domain.displacement(own.planar_position(), other.planar_position()))
                 .collect();
-            ways.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
-            ways
+            displacements.sort_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
+            displacements
         };
         let order = |own: &Particle| {
-            let ways = ways(own);
-            let angles = ways.iter().take(6).map(|[x, y]| 6.0 * y.atan2(*x));
+            let displacements = displacements(own);
+            let angles = displacements.iter().take(6).map(|[x, y]| 6.0 * y.atan2(*x));
             let sum = angles.fold([0.0; 2], |[a, b], angle| [a + angle.cos() / 6.0, b + angle.sin() / 6.0]);
-            (sum, ways.iter().filter(|[x, y]| x.hypot(*y) < 1.5).count())
+            (sum, displacements.iter().filter(|[x, y]| x.hypot(*y) < 1.5).count())
         };
         let naive: Vec<([f64; 2], usize)> = discs_of.iter().map(order).collect();
         let share = 1.0 / naive.len() as f64;

@@ -22,7 +22,7 @@ pub struct Numbers<T> {
 }
 
 /// A mask offset: shift, and vector between the centres of the cells.
-pub type Place<T> = (isize, [T; 2]);
+pub type MaskNeighbour<T> = (isize, [T; 2]);
 
 #[cfg(target_arch = "x86_64")]
 macro_rules! sweep {
@@ -37,7 +37,7 @@ macro_rules! sweep {
             from: &Vectors<'_, $ty>,
             to: [&mut [$ty]; 3],
             range: std::ops::Range<usize>,
-            places: &[Place<$ty>],
+            neighbours: &[MaskNeighbour<$ty>],
             numbers: Numbers<$ty>,
         ) {
             use std::arch::x86_64::*;
@@ -57,10 +57,10 @@ macro_rules! sweep {
                     let (radius, weight) = (own(from.radius), own(from.inverse_mass));
                     let omega = if FRICTION { own(from.omega) } else { zero };
                     let (mut fx, mut fy, mut torque) = (zero, zero, zero);
-                    for &(shift, way) in places {
+                    for &(shift, displacement) in neighbours {
                         let at = |column: &[$ty]| $load(column.as_ptr().offset(cell as isize + shift));
-                        let dx = $sub($sub(x, at(from.x)), $set1(way[0]));
-                        let dy = $sub($sub(y, at(from.y)), $set1(way[1]));
+                        let dx = $sub($sub(x, at(from.x)), $set1(displacement[0]));
+                        let dy = $sub($sub(y, at(from.y)), $set1(displacement[1]));
                         let distance = $sqrt($add($mul(dx, dx), $mul(dy, dy)));
                         let radius_there = at(from.radius);
                         let penetration = $sub($add(radius, radius_there), distance);

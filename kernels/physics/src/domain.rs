@@ -76,10 +76,12 @@ impl Domain {
     /// Vector from `from` to `to`, the shortest across periodic sides (length).
     pub fn displacement<const D: usize>(&self, from: [f64; D], to: [f64; D]) -> [f64; D] {
         std::array::from_fn(|axis| {
-            let way = to[axis] - from[axis];
+            let difference = to[axis] - from[axis];
             match self.sides[axis] {
-                BoxSide::Periodic(side) if way.abs() > 0.5 * side => way - (way / side).round() * side,
-                _ => way,
+                BoxSide::Periodic(side) if difference.abs() > 0.5 * side => {
+                    difference - (difference / side).round() * side
+                }
+                _ => difference,
             }
         })
     }
@@ -153,7 +155,9 @@ mod tests {
         assert!(space.contains([-1e300, 1.0, 7.0]) && !space.contains([0.0, 3.0, 0.0]));
         assert_eq!(space.wrapped([-5.0, 3.0, 9.0]), [-5.0, 1.0, 9.0]);
         assert_eq!(
-            space.displacement([0.0, 0.1, 0.0], [8.0, 1.9, -3.0]).map(|way| (way * 10.0).round()),
+            space
+                .displacement([0.0, 0.1, 0.0], [8.0, 1.9, -3.0])
+                .map(|difference| (difference * 10.0).round()),
             [80.0, -2.0, -30.0]
         );
         let plane = Domain::planar([0.0; 2], [1.0; 2], [false; 2]);

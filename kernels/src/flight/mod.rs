@@ -173,10 +173,10 @@ fn collision_times<R: Registers<Lane = f64>>(
     let half = uniform(0.5);
     // Few pairs are nearer across a side. Behind a branch, the others need not wait for their correction, which is zero.
     if !registers.none(x.abs().less_than(half).and(y.abs().less_than(half)).not()) {
-        let nearest = |side: f64, way: R::V, periods: R::V| {
+        let nearest = |side: f64, distance: R::V, periods: R::V| {
             // Rounds to the nearest whole number.
             let whole = (periods + periods).truncate() - periods.truncate();
-            way - whole * uniform(side)
+            distance - whole * uniform(side)
         };
         dx = nearest(space.sides[0], dx, x);
         dy = nearest(space.sides[1], dy, y);

@@ -22,7 +22,7 @@ pub trait Env<const DIM: usize>: Copy {
     /// Vector of numbers.
     type V: Vector;
     /// Location of a partner: a lattice offset, a gather index or a cyclic shift.
-    type Place: Copy;
+    type Partner: Copy;
     /// True if a pair is visited once, so that the law gives the partner's share with [`Env::partner_sub`].
     const BOTH_PARTNERS: bool;
 
@@ -31,9 +31,9 @@ pub trait Env<const DIM: usize>: Copy {
     /// A quantity of the own particle.
     fn own(self, field: ParticleField) -> Self::V;
     /// `r_own − r_partner`.
-    fn displacement(self, own: [Self::V; DIM], place: Self::Place) -> [Self::V; DIM];
+    fn displacement(self, own: [Self::V; DIM], partner: Self::Partner) -> [Self::V; DIM];
     /// A quantity of the partner.
-    fn partner(self, field: ParticleField, place: Self::Place) -> Self::V;
+    fn partner(self, field: ParticleField, partner: Self::Partner) -> Self::V;
     /// Broadcasts a number to all pairs.
     fn uniform(self, value: f64) -> Self::V;
     /// True if the predicate is false for all pairs and this execution takes early exits.
@@ -41,14 +41,14 @@ pub trait Env<const DIM: usize>: Copy {
     /// Adds to a sum of the own particle.
     fn own_add(self, sum: ParticleSum, value: Self::V);
     /// Subtracts from a sum of the partner. Called only where [`Env::BOTH_PARTNERS`].
-    fn partner_sub(self, sum: ParticleSum, place: Self::Place, value: Self::V);
+    fn partner_sub(self, sum: ParticleSum, partner: Self::Partner, value: Self::V);
     /// Adds `a · b` to a sum of the own particle. If the pair is visited once, subtracts it from the partner's sum.
     #[inline(always)]
-    fn add_product(self, sum: ParticleSum, place: Self::Place, a: Self::V, b: Self::V) {
+    fn add_product(self, sum: ParticleSum, partner: Self::Partner, a: Self::V, b: Self::V) {
         let product = a * b;
         self.own_add(sum, product);
         if Self::BOTH_PARTNERS {
-            self.partner_sub(sum, place, product);
+            self.partner_sub(sum, partner, product);
         }
     }
     /// True if penetrations are watched.
@@ -93,7 +93,7 @@ pub trait Env<const DIM: usize>: Copy {
 ///     const FIELDS: &'static [ParticleField] = &[];
 ///     const SUMS: &'static [ParticleSum] = &[ParticleSum::Force(Axis::Z)];
 ///     fn own<E: Env<2>>(&self, _: E) {}
-///     fn pair<E: Env<2>>(&self, _: E, _: E::Place, _: &()) {}
+///     fn pair<E: Env<2>>(&self, _: E, _: E::Partner, _: &()) {}
 /// }
 ///
 /// check(&Lifting)?; // A disc of the plane has no force along z.
@@ -110,6 +110,6 @@ pub trait Law<const DIM: usize>: Clone {
 
     /// Loads the own particle.
     fn own<E: Env<DIM>>(&self, env: E) -> Self::Own<E::V>;
-    /// Evaluates the interaction of the own particle and its partner at `place`.
-    fn pair<E: Env<DIM>>(&self, env: E, place: E::Place, own: &Self::Own<E::V>);
+    /// Evaluates the interaction of the own particle and its partner at `partner`.
+    fn pair<E: Env<DIM>>(&self, env: E, partner: E::Partner, own: &Self::Own<E::V>);
 }

@@ -121,17 +121,17 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
     /// spins opposite signs: here both surfaces count, `R_i Ω_i + R_j Ω_j`. (10)–(12) use another tangent than (13): here (13) is
     /// used throughout.
     #[inline(always)]
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &OwnDisc<E::V>) {
+    fn pair<E: Env<2>>(&self, env: E, partner: E::Partner, own: &OwnDisc<E::V>) {
         let Contact { normal_damping, shear_damping, friction, cohesionless, arm, .. } = self.contact;
         let uniform = |value: f64| env.uniform(value);
         let zero = uniform(0.0);
 
         env.section("distance"); // (4)-(6)
-        let [dx, dy] = env.displacement(own.position, place);
+        let [dx, dy] = env.displacement(own.position, partner);
         let distance = (dx * dx + dy * dy).sqrt();
 
         env.section("contact"); // (7)
-        let radius = self.radius(uniform, |field| env.partner(field, place));
+        let radius = self.radius(uniform, |field| env.partner(field, partner));
         let reach = own.radius + radius;
         let penetration = reach - distance;
         if env.watches() {
@@ -145,9 +145,9 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         env.section("normal force"); // (14), (17)
         let inverse_distance = uniform(1.0) / distance;
         let [nx, ny] = [dx * inverse_distance, dy * inverse_distance];
-        let vx = own.velocity[0] - env.partner(ParticleField::Velocity(X), place);
-        let vy = own.velocity[1] - env.partner(ParticleField::Velocity(Y), place);
-        let inverse_mass = self.inverse_mass(uniform, |field| env.partner(field, place));
+        let vx = own.velocity[0] - env.partner(ParticleField::Velocity(X), partner);
+        let vy = own.velocity[1] - env.partner(ParticleField::Velocity(Y), partner);
+        let inverse_mass = self.inverse_mass(uniform, |field| env.partner(field, partner));
         let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
         let overlap = penetration.max(zero);
         let elastic = self.contact.elastic(uniform, overlap);
@@ -179,8 +179,8 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
         if !FRICTION {
             env.section("sums"); // (10), (11)
-            add_pair_force(env, place, ParticleSum::Force(X), fn_ * nx);
-            add_pair_force(env, place, ParticleSum::Force(Y), fn_ * ny);
+            add_pair_force(env, partner, ParticleSum::Force(X), fn_ * nx);
+            add_pair_force(env, partner, ParticleSum::Force(Y), fn_ * ny);
             if env.counts_dissipation() {
                 env.section("dissipation");
                 dissipate((elastic - normal) * separation);
@@ -196,7 +196,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         }
         let surfaces = if arm == ContactArm::Lammps { [own.radius, radius] } else { arms };
         let own_spin = surfaces[0] * own.omega;
-        let omega = env.partner(ParticleField::Omega, place);
+        let omega = env.partner(ParticleField::Omega, partner);
         let spin = own_spin + surfaces[1] * omega;
         let sliding = vy * nx - vx * ny;
         let slip = sliding - spin;
@@ -206,11 +206,11 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let fs = E::V::select(contact, shear, zero); // (9)
 
         env.section("sums"); // (10)-(12)
-        add_pair_force(env, place, ParticleSum::Force(X), fn_ * nx - fs * ny);
-        add_pair_force(env, place, ParticleSum::Force(Y), fn_ * ny + fs * nx);
+        add_pair_force(env, partner, ParticleSum::Force(X), fn_ * nx - fs * ny);
+        add_pair_force(env, partner, ParticleSum::Force(Y), fn_ * ny + fs * nx);
         env.own_add(ParticleSum::Torque, zero - arms[0] * fs);
         if E::BOTH_PARTNERS {
-            env.partner_sub(ParticleSum::Torque, place, arms[1] * fs);
+            env.partner_sub(ParticleSum::Torque, partner, arms[1] * fs);
         }
         if env.counts_dissipation() {
             env.section("dissipation");
@@ -223,9 +223,9 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
 
 /// Adds a force to the own disc and its reaction to the partner.
 #[inline(always)]
-fn add_pair_force<E: Env<2>>(env: E, place: E::Place, sum: ParticleSum, force: E::V) {
+fn add_pair_force<E: Env<2>>(env: E, partner: E::Partner, sum: ParticleSum, force: E::V) {
     env.own_add(sum, force);
     if E::BOTH_PARTNERS {
-        env.partner_sub(sum, place, force);
+        env.partner_sub(sum, partner, force);
     }
 }

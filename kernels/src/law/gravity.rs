@@ -53,21 +53,21 @@ impl<const RATE: bool> Law<3> for Gravity<RATE> {
     }
 
     #[inline(always)]
-    fn pair<E: Env<3>>(&self, env: E, place: E::Place, own: &OwnBody<E::V>) {
+    fn pair<E: Env<3>>(&self, env: E, partner: E::Partner, own: &OwnBody<E::V>) {
         env.section("distance");
-        let displacement = env.displacement(own.position, place);
+        let displacement = env.displacement(own.position, partner);
         let softened = env.uniform(self.softening * self.softening);
         let [dx, dy, dz] = displacement;
         let square = dx.times_plus(dx, dy.times_plus(dy, dz.times_plus(dz, softened)));
         env.section("attraction");
         let inverse_cube = square.inverse_three_halves(env.uniform(1.0));
-        let attraction = own.minus_mass * env.partner(ParticleField::Mass, place) * inverse_cube;
+        let attraction = own.minus_mass * env.partner(ParticleField::Mass, partner) * inverse_cube;
         for axis in 0..3 {
-            env.add_product(FORCE[axis], place, displacement[axis], attraction);
+            env.add_product(FORCE[axis], partner, displacement[axis], attraction);
         }
         if let Some([u, v, w]) = own.velocity {
             env.section("rate");
-            let [u_there, v_there, w_there] = VELOCITY.map(|velocity| env.partner(velocity, place));
+            let [u_there, v_there, w_there] = VELOCITY.map(|velocity| env.partner(velocity, partner));
             let change = [u - u_there, v - v_there, w - w_there];
             // With s = |d|² + ε²: d/dt (d s^(−3/2)) = (d' − 3 (d·d')/s d) s^(−3/2), and 1/s = (s s^(−3/2))².
             let along = dx.times_plus(change[0], dy.times_plus(change[1], dz * change[2]));
@@ -75,7 +75,7 @@ impl<const RATE: bool> Law<3> for Gravity<RATE> {
             let shrinking = env.uniform(-3.0) * along * inverse_root * inverse_root;
             for axis in 0..3 {
                 let rate = displacement[axis].times_plus(shrinking, change[axis]);
-                env.add_product(FORCE_RATE[axis], place, rate, attraction);
+                env.add_product(FORCE_RATE[axis], partner, rate, attraction);
             }
         }
         if env.observes_energy() {

@@ -98,10 +98,10 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
 
     /// Evaluates F/r times the vector between the particles.
     #[inline(always)]
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
+    fn pair<E: Env<2>>(&self, env: E, partner: E::Partner, own: &[E::V; 2]) {
         let uniform = |value: f64| env.uniform(value);
         env.section("distance");
-        let [dx, dy] = env.displacement(*own, place);
+        let [dx, dy] = env.displacement(*own, partner);
         let square = dx * dx + dy * dy;
         let within = square.less_than(uniform(self.square));
         // A kernel on the lattice also visits each particle itself and empty cells, all at infinity.
@@ -114,7 +114,7 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
         let strength = E::V::select(within, force, zero);
         env.section("sums");
         for (sum, along) in [(ParticleSum::Force(X), dx), (ParticleSum::Force(Y), dy)] {
-            env.add_product(sum, place, strength, along);
+            env.add_product(sum, partner, strength, along);
         }
         if env.observes_energy() {
             env.section("energy");

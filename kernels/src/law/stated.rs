@@ -126,7 +126,7 @@ fn panic_unstated(what: &'static str) -> ! {
 
 impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
     type V = E::V;
-    type Place = E::Place;
+    type Partner = E::Partner;
     const BOTH_PARTNERS: bool = E::BOTH_PARTNERS;
 
     #[inline(always)]
@@ -139,13 +139,13 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
         self.env.own(field)
     }
     #[inline(always)]
-    fn displacement(self, own: [E::V; DIM], place: E::Place) -> [E::V; DIM] {
-        self.env.displacement(own, place)
+    fn displacement(self, own: [E::V; DIM], partner: E::Partner) -> [E::V; DIM] {
+        self.env.displacement(own, partner)
     }
     #[inline(always)]
-    fn partner(self, field: ParticleField, place: E::Place) -> E::V {
+    fn partner(self, field: ParticleField, partner: E::Partner) -> E::V {
         Self::field::<DIM>(field);
-        self.env.partner(field, place)
+        self.env.partner(field, partner)
     }
     #[inline(always)]
     fn uniform(self, value: f64) -> E::V {
@@ -161,14 +161,14 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
         self.env.own_add(sum, value);
     }
     #[inline(always)]
-    fn partner_sub(self, sum: ParticleSum, place: E::Place, value: E::V) {
+    fn partner_sub(self, sum: ParticleSum, partner: E::Partner, value: E::V) {
         Self::sum::<DIM>(sum);
-        self.env.partner_sub(sum, place, value);
+        self.env.partner_sub(sum, partner, value);
     }
     #[inline(always)]
-    fn add_product(self, sum: ParticleSum, place: E::Place, a: E::V, b: E::V) {
+    fn add_product(self, sum: ParticleSum, partner: E::Partner, a: E::V, b: E::V) {
         Self::sum::<DIM>(sum);
-        self.env.add_product(sum, place, a, b);
+        self.env.add_product(sum, partner, a, b);
     }
     #[inline(always)]
     fn watches(self) -> bool {
@@ -246,7 +246,7 @@ impl LawProbe {
 
 impl<const DIM: usize> Env<DIM> for &LawProbe {
     type V = f64;
-    type Place = ();
+    type Partner = ();
     const BOTH_PARTNERS: bool = true;
 
     fn own_position(self) -> [f64; DIM] {

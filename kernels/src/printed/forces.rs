@@ -60,17 +60,17 @@ impl Law<2> for Printed {
     /// the overlap, because without contact it has no value. (15): bounded on both sides. (16): the component along the tangent,
     /// both spins with one sign.
     #[inline(always)]
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &OwnCell<E::V>) {
+    fn pair<E: Env<2>>(&self, env: E, partner: E::Partner, own: &OwnCell<E::V>) {
         let Contact { normal_damping, shear_damping, friction, .. } = self.contact;
         let uniform = |value: f64| env.uniform(value);
         let (zero, one) = (uniform(0.0), uniform(1.0));
 
         env.section("(5), (6)");
-        let [dx, dy] = env.displacement(own.position, place);
+        let [dx, dy] = env.displacement(own.position, partner);
         env.section("(4)");
         let dist = (dx * dx + dy * dy).sqrt();
         env.section("(7)");
-        let radius = env.partner(ParticleField::Radius, place);
+        let radius = env.partner(ParticleField::Radius, partner);
         let overlap = (own.radius + radius) - dist;
         let contact = E::V::select(zero.less_than(overlap), one, zero);
         if env.watches() {
@@ -78,11 +78,11 @@ impl Law<2> for Printed {
         }
 
         env.section("(17)");
-        let mass = env.partner(ParticleField::Mass, place);
+        let mass = env.partner(ParticleField::Mass, partner);
         let m_eff = (own.mass * mass) / (own.mass + mass);
         env.section("(14)");
-        let vx = own.velocity[0] - env.partner(ParticleField::Velocity(Axis::X), place);
-        let vy = own.velocity[1] - env.partner(ParticleField::Velocity(Axis::Y), place);
+        let vx = own.velocity[0] - env.partner(ParticleField::Velocity(Axis::X), partner);
+        let vy = own.velocity[1] - env.partner(ParticleField::Velocity(Axis::Y), partner);
         let inverse = one / dist;
         let separation = (vx * dx + vy * dy) * inverse;
         let xi = contact * overlap;
@@ -90,13 +90,13 @@ impl Law<2> for Printed {
         let normal = elastic - (uniform(normal_damping) * m_eff) * separation;
         env.section("(16)");
         let sliding = (vy * dx - vx * dy) * inverse;
-        let v_rel = sliding - own.radius * own.omega - radius * env.partner(ParticleField::Omega, place);
+        let v_rel = sliding - own.radius * own.omega - radius * env.partner(ParticleField::Omega, partner);
         env.section("(15)");
         let limit = uniform(friction) * normal.abs();
         let shear = ((uniform(-shear_damping) * m_eff) * v_rel).min(limit).max(zero - limit);
 
         env.section("(8)");
-        let touching = (own.test * env.partner(ParticleField::Occupied, place)) * contact;
+        let touching = (own.test * env.partner(ParticleField::Occupied, partner)) * contact;
         let fn_ = touching * normal;
         env.section("(9)");
         let fs = touching * shear;

@@ -103,7 +103,7 @@ pub struct CellOffsets {
     shape: LatticeShape,
     half_width: isize,
     /// Number of each mask offset, by row and column from the lower left corner; the own cell has the last number.
-    place: Vec<Option<u16>>,
+    offset_number: Vec<Option<u16>>,
     edge: [f64; 2],
     relative: bool,
 }
@@ -114,13 +114,13 @@ impl CellOffsets {
     pub fn new(shape: LatticeShape, frame: LatticeFrame, mask: &Mask, relative: bool) -> CellOffsets {
         let half_width = mask.half_width() as isize;
         let side = 2 * half_width + 1;
-        let mut place = vec![None; (side * side) as usize];
+        let mut offset_number = vec![None; (side * side) as usize];
         for (number, offset) in mask.offsets().iter().enumerate() {
             let at = (offset.rows as isize + half_width) * side + offset.columns as isize + half_width;
-            place[at as usize] = Some(number as u16);
+            offset_number[at as usize] = Some(number as u16);
         }
-        place[(half_width * side + half_width) as usize] = Some(mask.offsets().len() as u16);
-        CellOffsets { shape, half_width, place, edge: frame.edge, relative }
+        offset_number[(half_width * side + half_width) as usize] = Some(mask.offsets().len() as u16);
+        CellOffsets { shape, half_width, offset_number, edge: frame.edge, relative }
     }
 
     /// Column and row of a cell numbered from 1 in the padded lattice.
@@ -147,7 +147,7 @@ impl CellOffsets {
         }
         let side = 2 * self.half_width + 1;
         let at = (offset[1] + self.half_width) * side + offset[0] + self.half_width;
-        let number = self.place[at as usize]?;
+        let number = self.offset_number[at as usize]?;
         Some((number, [offset[0] as f64 * self.edge[0], offset[1] as f64 * self.edge[1]], periods))
     }
 }
@@ -156,7 +156,7 @@ impl CellOffsets {
 #[derive(Clone, Copy)]
 struct ListPartner<P> {
     disc: usize,
-    place: u16,
+    offset_number: u16,
     displacement: [P; 2],
 }
 
@@ -190,7 +190,7 @@ impl<'a, P: Precision> ListEnv<'a, P> {
 
 impl<P: Precision> Env<2> for &ListEnv<'_, P> {
     type V = P;
-    type Place = ListPartner<P>;
+    type Partner = ListPartner<P>;
     const BOTH_PARTNERS: bool = false;
 
     #[inline]
@@ -202,12 +202,12 @@ impl<P: Precision> Env<2> for &ListEnv<'_, P> {
         self.field(field, self.own)
     }
     #[inline]
-    fn displacement(self, _: [P; 2], place: ListPartner<P>) -> [P; 2] {
-        place.displacement
+    fn displacement(self, _: [P; 2], offset_number: ListPartner<P>) -> [P; 2] {
+        offset_number.displacement
     }
     #[inline]
-    fn partner(self, field: ParticleField, place: ListPartner<P>) -> P {
-        self.field(field, place.disc)
+    fn partner(self, field: ParticleField, offset_number: ListPartner<P>) -> P {
+        self.field(field, offset_number.disc)
     }
     #[inline]
     fn uniform(self, value: f64) -> P {
@@ -273,7 +273,8 @@ pub fn sweep_lists<P: Precision, L: Law<2>>(
 ) -> ListReport {
     let zero = P::from_f64(0.0);
     let square = P::from_f64(reach * reach);
-    let places: Vec<[isize; 2]> = discs.cell.iter().map(|&cell| cell_offsets.column_and_row(cell)).collect();
+    let columns_and_rows: Vec<[isize; 2]> =
+        discs.cell.iter().map(|&cell| cell_offsets.column_and_row(cell)).collect();
     let mut met = ListReport::default();
     let mut contacts: Vec<ListPartner<P>> = Vec::new();
     let mut env = ListEnv {
@@ -295,7 +296,8 @@ pub fn sweep_lists<P: Precision, L: Law<2>>(
         contacts.clear();
         for &j in lists.of(i) {
             let j = j as usize;
-            let Some((place, cell_offset, periods)) = cell_offsets.offset_between(places[i], places[j])
+            let Some((offset_number, cell_offset, periods)) =
+                cell_offsets.offset_between(columns_and_rows[i], columns_and_rows[j])
             else {
                 continue;
             };
@@ -309,10 +311,10 @@ pub fn sweep_lists<P: Precision, L: Law<2>>(
                 }
             });
             if displacement[0] * displacement[0] + displacement[1] * displacement[1] < square {
-                contacts.push(ListPartner { disc: j, place, displacement });
+                contacts.push(ListPartner { disc: j, offset_number, displacement });
             }
         }
-        contacts.sort_unstable_by_key(|partner| (partner.place, partner.disc));
+        contacts.sort_unstable_by_key(|partner| (partner.offset_number, partner.disc));
         let met_one = StatedEnv::new(&env, law);
         let own = law.own(met_one);
         for partner in &contacts {

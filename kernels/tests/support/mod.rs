@@ -338,7 +338,7 @@ impl<S: Precision, P: Precision> System<S, P> {
         let velocity = self.velocity.each_ref().map(|column| state(column));
         let (radius, inverse_mass) = (state(&self.radius), state(&self.lattice_inverse_mass));
         let discs = fast::DiscColumns {
-            place: [&places[0], &places[1]],
+            position: [&places[0], &places[1]],
             velocity: [&velocity[0], &velocity[1]],
             omega: &velocity[2],
             per_time: 1.0,
@@ -434,7 +434,7 @@ pub fn random_pairs(seed: u64, count: usize) -> impl Iterator<Item = Pair> {
 }
 
 /// Every execution of kernels, on every instruction set of this processor.
-pub fn all_ways() -> Vec<(Execution, InstructionSet)> {
+pub fn all_configurations() -> Vec<(Execution, InstructionSet)> {
     let executions =
         [Execution::Chained, Execution::Eager].into_iter().chain([1, 7, 16, 64, 1000].map(Execution::Strip));
     let sets: Vec<_> = InstructionSet::available().collect();

@@ -260,12 +260,12 @@ fn density_figure(
     }
     let rows = slices.iter().step_by(stride).map(|(_, counts)| counts.iter().map(|it| it / mean).collect());
     let [width, height] = last.cell;
-    let (side, way) = if width > height { (0, "x") } else { (1, "y") };
+    let (side, axis_name) = if width > height { (0, "x") } else { (1, "y") };
     let [of_length, of_time] = UnitSystem::of(scene).at_axes();
     let axis = |label: &str, unit: &str, ends| ChartAxis::linear(label, Some(unit)).between(ends);
     Some(
         Picture::Map(HeatMap {
-            x: axis(way, &of_length, [last.origin[side], last.origin[side] + last.cell[side]]),
+            x: axis(axis_name, &of_length, [last.origin[side], last.origin[side] + last.cell[side]]),
             y: axis("time", &of_time, [*begun, *ended]),
             value: ChartAxis::linear("density, relative to the mean", None),
             rows: rows.collect(),

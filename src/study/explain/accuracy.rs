@@ -26,7 +26,7 @@ const WISHES: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
 
 /// Smallest error of a configuration against wall time, at the best of its steps.
 struct ErrorCurve<'f> {
-    way: &'f MeasuredConfiguration,
+    configuration: &'f MeasuredConfiguration,
     points: Vec<ErrorPoint>,
 }
 
@@ -79,31 +79,39 @@ fn made(
 fn curves<'f>(case: &StudyCase, findings: &'f Findings) -> Vec<ErrorCurve<'f>> {
     let chance = findings.chance();
     let mut chosen: Vec<(&MeasuredConfiguration, SettingChoice)> = vec![];
-    for way in findings.ways.iter().filter(|way| way.dropped.is_none() && way.cost.is_some()) {
-        let own = way.choice(case);
+    for configuration in findings
+        .configurations
+        .iter()
+        .filter(|configuration| configuration.dropped.is_none() && configuration.cost.is_some())
+    {
+        let own = configuration.choice(case);
         let is_another = |(_, other): &(&MeasuredConfiguration, SettingChoice)| {
             !own.agrees_on(other, ChoiceEffect::Order)
                 || own.scheme().is_none() && !own.agrees_on(other, ChoiceEffect::Cost)
         };
         if chosen.iter().all(is_another) {
-            chosen.push((way, own));
+            chosen.push((configuration, own));
         }
     }
     chosen
         .iter()
-        .map(|(way, _)| ErrorCurve { way, points: least_errors(way, case, findings, &chance) })
+        .map(|(configuration, _)| ErrorCurve {
+            configuration,
+            points: least_errors(configuration, case, findings, &chance),
+        })
         .collect()
 }
 
 /// Smallest errors against wall time.
 fn least_errors(
-    way: &MeasuredConfiguration,
+    configuration: &MeasuredConfiguration,
     case: &StudyCase,
     findings: &Findings,
     chance: &StatisticalError,
 ) -> Vec<ErrorPoint> {
-    let Some(cost) = way.cost else { return vec![] };
-    if let (Some(drift), Some(step), Some(time)) = (&way.drift, way.step, case.duration()) {
+    let Some(cost) = configuration.cost else { return vec![] };
+    if let (Some(drift), Some(step), Some(time)) = (&configuration.drift, configuration.step, case.duration())
+    {
         let of = |it: &StepDeviation| {
             let seconds = findings.start + findings.row_seconds(time) + cost * step / it.step * time;
             ErrorPoint { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
@@ -118,13 +126,16 @@ fn least_errors(
     let shortest = findings.whole.unwrap_or(if mean.apart > 0.0 { SHORTEST * mean.apart } else { 1.0 });
     let first = start + (cost + rows) * (shortest + mean.transient);
     let walls = (0..=POINTS * DECADES).map(|at| first * 10f64.powf(f64::from(at) / f64::from(POINTS)));
-    let steps = if way.step.is_some() { &STEPS[..] } else { &STEPS[..1] };
+    let steps = if configuration.step.is_some() { &STEPS[..] } else { &STEPS[..1] };
     let least = |seconds: f64| {
         let of = |part: &f64| {
-            let step = way.step.map(|step| part * step);
+            let step = configuration.step.map(|step| part * step);
             let time = (seconds - start) / (cost / part + rows) - mean.transient;
-            let off =
-                way.bias.zip(step).map(|(bias, step)| bias.over(step, time.max(0.0))).unwrap_or_default();
+            let off = configuration
+                .bias
+                .zip(step)
+                .map(|(bias, step)| bias.over(step, time.max(0.0)))
+                .unwrap_or_default();
             let chance = if time > 0.0 { chance.over(time) } else { f64::INFINITY };
             ErrorPoint { seconds, step, error: off.shift + chance, most: off.below + chance }
         };
@@ -136,11 +147,15 @@ fn least_errors(
 fn summary(scene: &str, target: &PlanTarget, findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
     let least = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
     let first = least(&mut curves.iter().filter_map(|curve| Some(curve.points.first()?.seconds)));
-    let longest = curves.iter().filter(|curve| curve.way.bound.is_some()).filter_map(|curve| curve.way.step);
+    let longest = curves
+        .iter()
+        .filter(|curve| curve.configuration.bound.is_some())
+        .filter_map(|curve| curve.configuration.step);
     let longest = longest.reduce(f64::max);
     let mean = &findings.mean;
-    let not_compared =
-        findings.ways.iter().filter_map(|way| Some(format!("{}: {}", way.label, way.dropped.as_ref()?)));
+    let not_compared = findings.configurations.iter().filter_map(|configuration| {
+        Some(format!("{}: {}", configuration.label, configuration.dropped.as_ref()?))
+    });
     FrameBuilder::of([()])
         .text("scene", |()| scene)
         .text("quantity", |()| target.quantity.name)
@@ -159,7 +174,7 @@ fn summary(scene: &str, target: &PlanTarget, findings: &Findings, curves: &[Erro
 
 fn points(curves: &[ErrorCurve<'_>]) -> ResultFrame {
     FrameBuilder::of(curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point))))
-        .text("configuration", |(curve, ..)| &curve.way.label)
+        .text("configuration", |(curve, ..)| &curve.configuration.label)
         .number("wall time (s)", 6, |(.., point)| point.seconds)
         .short("dt", |(.., point)| point.step)
         .number("error", 6, |(.., point)| point.error)
@@ -189,9 +204,10 @@ fn marks(plan: Option<&RunPlan>, target: &PlanTarget) -> ResultFrame {
 }
 
 fn biases(findings: &Findings, curves: &[ErrorCurve<'_>]) -> ResultFrame {
-    let steps = |curve: &ErrorCurve<'_>| Some((curve.way.bias?, curve.way.step?));
-    let compared = curves.iter().filter_map(|curve| Some((curve.way, steps(curve)?)));
-    let compared = compared.flat_map(|(way, (bias, longest))| STEPS.map(|part| (way, bias, part * longest)));
+    let steps = |curve: &ErrorCurve<'_>| Some((curve.configuration.bias?, curve.configuration.step?));
+    let compared = curves.iter().filter_map(|curve| Some((curve.configuration, steps(curve)?)));
+    let compared = compared
+        .flat_map(|(configuration, (bias, longest))| STEPS.map(|part| (configuration, bias, part * longest)));
     let mean = findings.mean.mean.abs();
     FrameBuilder::of(compared)
         .text("configuration", |it| &it.0.label)
@@ -222,7 +238,7 @@ fn cheapest_for_errors(findings: &Findings, curves: &[ErrorCurve<'_>]) -> Result
     FrameBuilder::of(WISHES.map(|wish| (wish, cheapest(wish))))
         .short("error (%)", |(wish, _)| 100.0 * wish)
         .text("cheapest", |(_, found)| {
-            found.map_or("none of those drawn".to_owned(), |(curve, _)| curve.way.label.clone())
+            found.map_or("none of those drawn".to_owned(), |(curve, _)| curve.configuration.label.clone())
         })
         .short("dt", |(_, found)| found.and_then(|(_, point)| point.step))
         .short("wall time (s)", |(_, found)| found.map(|(_, point)| point.seconds))

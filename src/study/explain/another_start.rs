@@ -14,15 +14,20 @@ impl SceneTrials<'_> {
     /// Returns the mean from another start less that from the scene's own, if it exceeds both error bars.
     ///
     /// Noise may hide the end of a transient in one of the two runs. Means that differ are therefore compared again after the later transient.
-    pub(super) fn starts_differ(&self, way: &MeasuredConfiguration, mean: &mut TrialMean) -> Option<f64> {
+    pub(super) fn starts_differ(
+        &self,
+        configuration: &MeasuredConfiguration,
+        mean: &mut TrialMean,
+    ) -> Option<f64> {
         // Whole runs have different starts anyway.
         let seed = self.case.prepared.seed.filter(|_| self.whole.is_none())?;
         let another = MeasuredConfiguration {
-            overrides: way.overrides.clone().set(&SEED, seed.wrapping_add(1)),
-            ..way.clone()
+            overrides: configuration.overrides.clone().set(&SEED, seed.wrapping_add(1)),
+            ..configuration.clone()
         };
-        let sample =
-            self.sample_over(&another, way.step, SampleSpan::Seconds(self.shares[4] * self.seconds)).ok()?;
+        let sample = self
+            .sample_over(&another, configuration.step, SampleSpan::Seconds(self.shares[4] * self.seconds))
+            .ok()?;
         let mut other = sample.known()?;
         if differ(&mean.known, &other) {
             let observed = (self.case.entry.quantities, self.target.place);

@@ -21,19 +21,21 @@ impl RunPlan {
             own.seconds <= self.seconds.likely && own.error.most <= self.expected.most * (1.0 + ROUNDING)
         };
         let Some(own) = self.own.clone().filter(is_better) else { return self };
-        let of_own = findings.ways.iter().find(|way| way.label == case.own.label());
+        let of_own =
+            findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
         let time = case.duration().unwrap_or(self.time);
-        let slower =
-            of_own.and_then(|way| way.step.zip(case.step())).map_or(1.0, |(longest, own)| longest / own);
-        let phases = of_own.map_or(vec![], |way| {
-            way.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
+        let slower = of_own
+            .and_then(|configuration| configuration.step.zip(case.step()))
+            .map_or(1.0, |(longest, own)| longest / own);
+        let phases = of_own.map_or(vec![], |configuration| {
+            configuration.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
         });
         let why = format!(
             "no plan reaches an equally small error in less time; the best takes {}",
             seconds(self.seconds.likely)
         );
         RunPlan {
-            way: case.own.label(),
+            configuration: case.own.label(),
             decisions: vec![Decision {
                 what: AS_IT_STANDS.to_owned(),
                 chosen: "as it stands".to_owned(),

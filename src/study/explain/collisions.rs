@@ -35,13 +35,13 @@ impl SceneTrials<'_> {
     /// not touch or a collision fails.
     pub(super) fn error_of_collisions(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         step: f64,
         mean: &TrialMean,
     ) -> Option<f64> {
         let trials = self.case.entry.trials?;
         let speed = mean_approach_speed(&mean.states, &self.case.prepared.domain);
-        let reference = self.choice(way).with(trials.references[0]).overrides();
+        let reference = self.choice(configuration).with(trials.references[0]).overrides();
         let (mut off, mut all, mut lost) = ([0.0; 3], 0.0, [0.0; 2]);
         for offset in OFFSETS {
             let text = (trials.encounter)(&self.case.prepared, EncounterGeometry { speed, offset })?;
@@ -52,7 +52,7 @@ impl SceneTrials<'_> {
             }
             let exact =
                 self.collision_change(&case, reference.clone().set(trials.step, REFERENCE * step), 0.0)?;
-            let overrides = way.choice(&case).overrides().set(trials.step, step);
+            let overrides = configuration.choice(&case).overrides().set(trials.step, step);
             let mut own = CollisionChange::default();
             for phase in 0..PHASES {
                 let late = f64::from(phase) / f64::from(PHASES) * step;

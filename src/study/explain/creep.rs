@@ -20,15 +20,15 @@ impl SceneTrials<'_> {
     /// For each integrator in use, returns its choice, its longest step (time), and the growth of its bias at that step.
     pub(super) fn bias_growths(
         &self,
-        ways: &[MeasuredConfiguration],
+        configurations: &[MeasuredConfiguration],
         mean: &TrialMean,
     ) -> Vec<(SettingChoice, f64, f64)> {
         let mut all: Vec<(SettingChoice, f64, f64)> = vec![];
-        for way in ways.iter().filter(|way| way.dropped.is_none()) {
-            let choice = self.choice(way);
+        for configuration in configurations.iter().filter(|configuration| configuration.dropped.is_none()) {
+            let choice = self.choice(configuration);
             let is_another = all.iter().all(|(other, ..)| !other.agrees_on(&choice, ChoiceEffect::Order));
-            if let Some(step) = way.step.filter(|_| is_another) {
-                all.push((choice, step, self.bias_growth(way, mean)));
+            if let Some(step) = configuration.step.filter(|_| is_another) {
+                all.push((choice, step, self.bias_growth(configuration, mean)));
             }
         }
         all
@@ -37,19 +37,19 @@ impl SceneTrials<'_> {
     /// Growth of a bias at the longest step (the quantity's unit, per unit of time); 0 where energy enters or leaves, or no drift is significant.
     ///
     /// Energies, and with them temperature and pressure, change by the same part; a mean over the run changes by half of that.
-    fn bias_growth(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> f64 {
+    fn bias_growth(&self, configuration: &MeasuredConfiguration, mean: &TrialMean) -> f64 {
         let keeps_shadow = || {
             let integrators = self.case.entry.trials?.shadow?.integrators;
-            Some(integrators.contains(&self.choice(way).scheme()?.name))
+            Some(integrators.contains(&self.choice(configuration).scheme()?.name))
         };
         if keeps_shadow() != Some(false) || self.conserved_balance(&mean.rows).is_none() {
             return 0.0;
         }
         let own = |rows: &[Vec<f64>]| drift(&self.conserved_balance(rows)?, rows);
-        let relative = match way.label == mean.way {
+        let relative = match configuration.label == mean.configuration {
             true => own(&mean.rows),
             false => self
-                .sample_over(way, way.step, SampleSpan::Seconds(SHARE * self.seconds))
+                .sample_over(configuration, configuration.step, SampleSpan::Seconds(SHARE * self.seconds))
                 .ok()
                 .and_then(|sample| own(&sample.rows)),
         };

@@ -16,23 +16,28 @@ pub(super) fn decisions(
 ) -> Vec<Decision> {
     let best = &weighed[0];
     let mut all = vec![];
-    for (axis, chosen) in &best.way.settings {
+    for (axis, chosen) in &best.configuration.settings {
         let mut beside: Vec<Alternative> = vec![];
         // The cheapest configuration represents each other setting.
-        let known = weighed.iter().map(|it| it.way);
-        for way in known.chain(&findings.ways) {
-            let Some((_, other)) = way.settings.iter().find(|(name, _)| name == axis) else { continue };
+        let known = weighed.iter().map(|it| it.configuration);
+        for configuration in known.chain(&findings.configurations) {
+            let Some((_, other)) = configuration.settings.iter().find(|(name, _)| name == axis) else {
+                continue;
+            };
             if other == chosen || beside.iter().any(|it| it.name == *other) {
                 continue;
             }
-            let own = weighed.iter().find(|it| it.way.label == way.label);
-            let differs = way.settings.iter().filter(|it| !best.way.settings.contains(it) && it.0 != *axis);
+            let own = weighed.iter().find(|it| it.configuration.label == configuration.label);
+            let differs = configuration
+                .settings
+                .iter()
+                .filter(|it| !best.configuration.settings.contains(it) && it.0 != *axis);
             let with: Vec<&str> = differs.map(|(_, name)| name.as_str()).collect();
             let with = if with.is_empty() { String::new() } else { format!(" (with {})", with.join(" ")) };
             beside.push(Alternative {
                 name: other.clone(),
                 cost: own.map(|it| it.optimum.seconds / best.optimum.seconds),
-                why: rejection_reason(way, own, best) + &with,
+                why: rejection_reason(configuration, own, best) + &with,
             });
         }
         let why = match beside.iter().filter_map(|it| it.cost).reduce(f64::min) {
@@ -45,7 +50,7 @@ pub(super) fn decisions(
         };
         all.push(Decision { what: axis.clone(), chosen: chosen.clone(), why, beside });
     }
-    all.extend(best.way.skin.map(|[own, skin, cost]| Decision {
+    all.extend(best.configuration.skin.map(|[own, skin, cost]| Decision {
         what: "skin".to_owned(),
         chosen: significant(skin, 3),
         why: format!(
@@ -55,7 +60,7 @@ pub(super) fn decisions(
         ),
         beside: vec![],
     }));
-    if let Some(longest) = best.way.step {
+    if let Some(longest) = best.configuration.step {
         all.push(step_decision(case, best, longest, wanted));
     }
     all.push(Decision {
@@ -110,7 +115,7 @@ fn step_decision(case: &StudyCase, best: &PlanCandidate<'_>, longest: f64, wante
     let own = case
         .step()
         .map_or(String::new(), |own| format!("{} times the scene's own; ", significant(step / own, 2)));
-    let bound = best.way.bound.clone().unwrap_or_else(|| "no theoretical limit".to_owned());
+    let bound = best.configuration.bound.clone().unwrap_or_else(|| "no theoretical limit".to_owned());
     let mut beside = vec![Alternative {
         name: significant(longest, 3),
         cost: None,
@@ -119,7 +124,7 @@ fn step_decision(case: &StudyCase, best: &PlanCandidate<'_>, longest: f64, wante
     if best.optimum.part == 1.0 {
         beside.clear();
     }
-    let why = match best.way.bias {
+    let why = match best.configuration.bias {
         Some(bias) => format!(
             "{own}bias {}, of an allowed error of {}; {}",
             match bias.is_significant() {
@@ -136,15 +141,15 @@ fn step_decision(case: &StudyCase, best: &PlanCandidate<'_>, longest: f64, wante
 }
 
 fn rejection_reason(
-    way: &MeasuredConfiguration,
+    configuration: &MeasuredConfiguration,
     own: Option<&PlanCandidate<'_>>,
     best: &PlanCandidate<'_>,
 ) -> String {
-    if let Some(why) = &way.dropped {
+    if let Some(why) = &configuration.dropped {
         return why.clone();
     }
-    let costs = |cost: f64| significant(cost / best.way.cost.unwrap_or(f64::NAN), 2);
-    if let Some(drift) = way.drift.as_ref().filter(|_| own.is_none()) {
+    let costs = |cost: f64| significant(cost / best.configuration.cost.unwrap_or(f64::NAN), 2);
+    if let Some(drift) = configuration.drift.as_ref().filter(|_| own.is_none()) {
         return match drift.least() {
             least if least.is_finite() => {
                 format!(
@@ -155,12 +160,12 @@ fn rejection_reason(
             _ => "none of its runs finished".to_owned(),
         };
     }
-    match (own, way.cost) {
+    match (own, configuration.cost) {
         (Some(own), _) if own.optimum.seconds > best.optimum.seconds => {
             "slower for the same error".to_owned()
         }
         (Some(_), _) => "as fast for the same error".to_owned(),
-        (None, Some(_)) if way.bias.is_some() => "its bias exceeds the target error".to_owned(),
+        (None, Some(_)) if configuration.bias.is_some() => "its bias exceeds the target error".to_owned(),
         (None, Some(cost)) => format!(
             "a unit of time costs {} times as much at its longest step; its bias was not measured",
             costs(cost)
@@ -203,17 +208,20 @@ const DIGITS: [&str; 2] = ["f64", "f32"];
 
 /// Compares single with double precision by the cheapest configuration timed in both.
 fn precision_comparison(findings: &Findings) -> Option<SimplerModelReport> {
-    let of = |way: &MeasuredConfiguration, axis: &str| {
-        way.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone())
+    let of = |configuration: &MeasuredConfiguration, axis: &str| {
+        configuration.settings.iter().find(|(name, _)| name == axis).map(|(_, it)| it.clone())
     };
     let with = |half: &MeasuredConfiguration| {
         let is_twin = |other: &&MeasuredConfiguration| {
             of(other, AXIS).as_deref() == Some(DIGITS[0])
                 && other.settings.iter().all(|it| it.0 == AXIS || half.settings.contains(it))
         };
-        findings.ways.iter().find(is_twin)
+        findings.configurations.iter().find(is_twin)
     };
-    let mut halves = findings.ways.iter().filter(|way| of(way, AXIS).as_deref() == Some(DIGITS[1]));
+    let mut halves = findings
+        .configurations
+        .iter()
+        .filter(|configuration| of(configuration, AXIS).as_deref() == Some(DIGITS[1]));
     let (half, cost) = halves.find_map(|half| {
         let full = with(half)?;
         // The steps of the two may differ.

@@ -49,17 +49,17 @@ enum PairingFailure {
 impl SceneTrials<'_> {
     /// Measures the bias of the cheapest configuration of each integrator. All that differ in precision or search alone share it: rounding is far
     /// below the resolution of a mean.
-    pub(super) fn biases(&self, ways: &mut [MeasuredConfiguration], mean: &TrialMean) {
+    pub(super) fn biases(&self, configurations: &mut [MeasuredConfiguration], mean: &TrialMean) {
         if self.case.entry.trials.is_none() {
             return;
         }
-        let creeps = self.bias_growths(ways, mean);
+        let creeps = self.bias_growths(configurations, mean);
         let all = self.shares[2] * self.seconds;
         // A few short pairs come first, and are repeated for as long as steps are shortened. None is shorter than a period.
         let mut seconds = if self.case.prepared.model.period().is_some() { all } else { SCOUT * all };
         let mut most = COMPARED;
         for _ in 0..=HALVINGS * COMPARED as u32 {
-            let Some(cases) = self.cases(ways, most) else { break };
+            let Some(cases) = self.cases(configurations, most) else { break };
             match self.paired(&cases, mean, seconds) {
                 Err(PairingFailure::FewStates) => break,
                 // The first short runs have little time.
@@ -72,7 +72,7 @@ impl SceneTrials<'_> {
                     let Some(first) = at.checked_sub(1).map(|at| cases.firsts[at / STEPS.len()]) else {
                         break;
                     };
-                    self.halve_steps(ways, &ways[first].clone(), &why);
+                    self.halve_steps(configurations, &configurations[first].clone(), &why);
                 }
                 Ok(paired) => {
                     let warned = |first: usize| {
@@ -86,41 +86,54 @@ impl SceneTrials<'_> {
                             continue;
                         }
                         _ => {
-                            self.assign_biases(ways, &cases, &paired, mean);
+                            self.assign_biases(configurations, &cases, &paired, mean);
                             break;
                         }
                     };
-                    self.halve_steps(ways, &ways[cases.firsts[at]].clone(), &why);
+                    self.halve_steps(configurations, &configurations[cases.firsts[at]].clone(), &why);
                 }
             }
         }
-        let is_any_known = ways.iter().any(|way| way.dropped.is_none() && way.bias.is_some());
-        for way in ways.iter_mut().filter(|way| way.bias.is_none() && way.dropped.is_none()) {
-            match way.step {
+        let is_any_known = configurations
+            .iter()
+            .any(|configuration| configuration.dropped.is_none() && configuration.bias.is_some());
+        for configuration in configurations
+            .iter_mut()
+            .filter(|configuration| configuration.bias.is_none() && configuration.dropped.is_none())
+        {
+            match configuration.step {
                 None => {}
-                Some(_) if is_any_known => way.dropped = Some("its bias was not measured".to_owned()),
+                Some(_) if is_any_known => {
+                    configuration.dropped = Some("its bias was not measured".to_owned())
+                }
                 // Limits and warnings alone then bound the step.
-                Some(step) => way.bias = Some(Bias::unknown(step, self.power(&self.choice(way)))),
+                Some(step) => {
+                    configuration.bias = Some(Bias::unknown(step, self.power(&self.choice(configuration))))
+                }
             }
         }
-        self.add_unpaired_biases(ways, mean);
+        self.add_unpaired_biases(configurations, mean);
         for (choice, step, creep) in creeps {
-            for way in ways.iter_mut().filter(|way| self.choice(way).agrees_on(&choice, ChoiceEffect::Order))
+            for configuration in configurations
+                .iter_mut()
+                .filter(|configuration| self.choice(configuration).agrees_on(&choice, ChoiceEffect::Order))
             {
-                way.bias = way.bias.map(|bias| bias.with_creep(step, creep));
+                configuration.bias = configuration.bias.map(|bias| bias.with_creep(step, creep));
             }
         }
-        sort_by_cost(ways);
+        sort_by_cost(configurations);
     }
 
     /// Adds the biases from the shadow energy and from single collisions to those from paired runs.
-    fn add_unpaired_biases(&self, ways: &mut [MeasuredConfiguration], mean: &TrialMean) {
-        let of_mean =
-            ways.iter().find_map(|way| Some((self.choice(way), mean.step?, self.shadow_bias(way, mean)?)));
+    fn add_unpaired_biases(&self, configurations: &mut [MeasuredConfiguration], mean: &TrialMean) {
+        let of_mean = configurations.iter().find_map(|configuration| {
+            Some((self.choice(configuration), mean.step?, self.shadow_bias(configuration, mean)?))
+        });
         let mut seen: Vec<(SettingChoice, Option<f64>)> = vec![];
-        for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
-            let Some(bias) = way.bias else { continue };
-            let choice = self.choice(way);
+        for configuration in configurations.iter_mut().filter(|configuration| configuration.dropped.is_none())
+        {
+            let Some(bias) = configuration.bias else { continue };
+            let choice = self.choice(configuration);
             let alike = |other: &SettingChoice| other.agrees_on(&choice, ChoiceEffect::Order);
             let bias = match &of_mean {
                 Some((of_mean, step, shadow)) if alike(of_mean) => bias.with_shadow(*step, *shadow),
@@ -128,22 +141,27 @@ impl SceneTrials<'_> {
             };
             let known = seen.iter().find(|(other, _)| alike(other)).map(|(_, part)| *part);
             let of_collisions = known.unwrap_or_else(|| {
-                let part =
-                    (self.left() > 0.0).then(|| self.error_of_collisions(way, bias.step, mean)).flatten();
+                let part = (self.left() > 0.0)
+                    .then(|| self.error_of_collisions(configuration, bias.step, mean))
+                    .flatten();
                 seen.push((choice, part));
                 part
             });
-            way.bias = Some(bias.with_collisions(of_collisions.map(|part| part * mean.known.mean.abs())));
+            configuration.bias =
+                Some(bias.with_collisions(of_collisions.map(|part| part * mean.known.mean.abs())));
         }
     }
 
     /// Returns the configurations to compare; none where one cannot be prepared.
-    fn cases(&self, ways: &[MeasuredConfiguration], most: usize) -> Option<PairedCases> {
+    fn cases(&self, configurations: &[MeasuredConfiguration], most: usize) -> Option<PairedCases> {
         let mut firsts: Vec<usize> = vec![];
-        for (at, way) in ways.iter().enumerate().filter(|(_, way)| way.dropped.is_none()) {
-            let own = self.choice(way);
-            let is_another =
-                firsts.iter().all(|&it| !self.choice(&ways[it]).agrees_on(&own, ChoiceEffect::Order));
+        for (at, configuration) in
+            configurations.iter().enumerate().filter(|(_, configuration)| configuration.dropped.is_none())
+        {
+            let own = self.choice(configuration);
+            let is_another = firsts
+                .iter()
+                .all(|&it| !self.choice(&configurations[it]).agrees_on(&own, ChoiceEffect::Order));
             // The scene's own is always included: a plan states the error of the scene's own values.
             let is_own = own.agrees_on(&self.case.own, ChoiceEffect::Order);
             if is_another && (firsts.len() < most || is_own) {
@@ -151,14 +169,16 @@ impl SceneTrials<'_> {
             }
         }
         let trials = self.case.entry.trials?;
-        let steps = |at: &usize| ways[*at].step;
+        let steps = |at: &usize| configurations[*at].step;
         let longest = firsts.iter().filter_map(steps).reduce(f64::max)?;
         let shortest = firsts.iter().filter_map(steps).reduce(f64::min)?;
-        let reference = self.choice(&ways[*firsts.first()?]).with(trials.references[0]);
+        let reference = self.choice(&configurations[*firsts.first()?]).with(trials.references[0]);
         let period = self.case.prepared.model.period();
         let spacing = period.map_or(APART * longest, |period| period / A_PERIOD as f64);
         let of_firsts = firsts.iter().flat_map(|&at| {
-            STEPS.map(|part| (ways[at].overrides.clone(), part * ways[at].step.unwrap_or(longest)))
+            STEPS.map(|part| {
+                (configurations[at].overrides.clone(), part * configurations[at].step.unwrap_or(longest))
+            })
         });
         let of_reference = (reference.overrides(), REFERENCE * shortest);
         let (overrides, steps): (Vec<Overrides>, Vec<f64>) =
@@ -212,7 +232,7 @@ impl SceneTrials<'_> {
     /// Assigns the biases measured by paired runs.
     fn assign_biases(
         &self,
-        ways: &mut [MeasuredConfiguration],
+        configurations: &mut [MeasuredConfiguration],
         cases: &PairedCases,
         paired: &PairedMeans,
         mean: &TrialMean,
@@ -222,7 +242,7 @@ impl SceneTrials<'_> {
         let memory = self.whole.unwrap_or((0.5 * mean.known.apart).max(period));
         let of_run = self.whole.map_or(1.0, |_| OF_WHOLE_RUN);
         for (number, &first) in cases.firsts.iter().enumerate() {
-            let choice = self.choice(&ways[first]);
+            let choice = self.choice(&configurations[first]);
             let power = self.power(&choice);
             let is_of_reference = choice.agrees_on(&cases.reference, ChoiceEffect::Order);
             let longest = paired.windows.iter().rev().find(|it| it.scatter <= TOGETHER);
@@ -240,9 +260,11 @@ impl SceneTrials<'_> {
             });
             // Longer windows show more of the bias but scatter more: the one with the smallest error bar is used.
             let best = bias.filter(|it| it.below().is_finite()).min_by(|a, b| a.bar.total_cmp(&b.bar));
-            for way in ways.iter_mut().filter(|way| self.choice(way).agrees_on(&choice, ChoiceEffect::Order))
+            for configuration in configurations
+                .iter_mut()
+                .filter(|configuration| self.choice(configuration).agrees_on(&choice, ChoiceEffect::Order))
             {
-                way.bias = best;
+                configuration.bias = best;
             }
         }
     }

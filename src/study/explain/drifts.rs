@@ -45,7 +45,7 @@ impl SceneTrials<'_> {
     /// A part of a run says nothing about the rest: bodies may have a close encounter late.
     pub(super) fn measure_deviations(
         &self,
-        mut ways: Vec<MeasuredConfiguration>,
+        mut configurations: Vec<MeasuredConfiguration>,
     ) -> Result<Findings, ExplainError> {
         let unknown = || ExplainError::NoMean {
             quantity: self.target.quantity.name,
@@ -55,45 +55,51 @@ impl SceneTrials<'_> {
         };
         let (time, own) = self.case.duration().zip(self.case.step()).ok_or_else(unknown)?;
         let (mut start, mut row) = (0.0, 0.0);
-        while let Some((at, step)) = self.next_run(&ways, [time, own]) {
-            let key = format!("whole run|{}|{step}", ways[at].label);
-            let wanted = self.target_deviation(&ways, own);
-            let Ok(run) =
-                self.journal.recall(&key, |_| true, || self.whole_run(&ways[at], step, [time, wanted]))
-            else {
+        while let Some((at, step)) = self.next_run(&configurations, [time, own]) {
+            let key = format!("whole run|{}|{step}", configurations[at].label);
+            let wanted = self.target_deviation(&configurations, own);
+            let Ok(run) = self.journal.recall(
+                &key,
+                |_| true,
+                || self.whole_run(&configurations[at], step, [time, wanted]),
+            ) else {
                 break;
             };
-            let way = &mut ways[at];
-            way.drift.get_or_insert_default().add(step, run.farthest);
+            let configuration = &mut configurations[at];
+            configuration.drift.get_or_insert_default().add(step, run.farthest);
             if let Some(costs) = run.costs {
                 (start, row) = (costs.start, costs.row);
-                (way.step, way.cost, way.phases) = (Some(step), Some(costs.unit), costs.phases);
+                (configuration.step, configuration.cost, configuration.phases) =
+                    (Some(step), Some(costs.unit), costs.phases);
             }
         }
-        self.own_run(&mut ways, [time, own]);
-        for way in ways.iter_mut().filter(|way| way.dropped.is_none()) {
-            let why = match &way.drift {
+        self.own_run(&mut configurations, [time, own]);
+        for configuration in configurations.iter_mut().filter(|configuration| configuration.dropped.is_none())
+        {
+            let why = match &configuration.drift {
                 None => "no run of it was expected to be the cheapest, or none fitted into the trial time",
                 Some(drift) if drift.least().is_infinite() => {
                     "its runs fail at every step that could be cheaper"
                 }
                 Some(_) => continue,
             };
-            way.dropped = Some(why.to_owned());
+            configuration.dropped = Some(why.to_owned());
         }
-        if ways.iter().all(|way| way.dropped.is_some()) {
-            let cheapest =
-                ways.iter().filter_map(|way| Some(way.cost? * way.step?)).fold(f64::INFINITY, f64::min);
+        if configurations.iter().all(|configuration| configuration.dropped.is_some()) {
+            let cheapest = configurations
+                .iter()
+                .filter_map(|configuration| Some(configuration.cost? * configuration.step?))
+                .fold(f64::INFINITY, f64::min);
             return Err(ExplainError::NoMean {
                 quantity: self.target.quantity.name,
                 why: "no run reached the end of the scene within the trial time".to_owned(),
                 enough: Some(2.0 * cheapest / own * time).filter(|seconds| seconds.is_finite()),
-                run: self.run_as_it_stands(&ways),
+                run: self.run_as_it_stands(&configurations),
             });
         }
-        sort_by_cost(&mut ways);
+        sort_by_cost(&mut configurations);
         self.unless_stopped(Findings {
-            ways,
+            configurations,
             mean: MeanEstimate::exactly(0.0),
             mean_way: String::new(),
             whole: None,
@@ -107,19 +113,26 @@ impl SceneTrials<'_> {
     }
 
     /// Runs the scene as it stands, where time is left: its user knows its values.
-    fn own_run(&self, ways: &mut [MeasuredConfiguration], [time, own]: [f64; 2]) {
+    fn own_run(&self, configurations: &mut [MeasuredConfiguration], [time, own]: [f64; 2]) {
         let label = self.case.own.label();
-        let Some(way) = ways.iter_mut().find(|way| way.label == label && way.dropped.is_none()) else {
+        let Some(configuration) = configurations
+            .iter_mut()
+            .find(|configuration| configuration.label == label && configuration.dropped.is_none())
+        else {
             return;
         };
-        let seconds = way.cost.zip(way.step).map_or(f64::INFINITY, |(cost, step)| cost * step / own * time);
-        if way.drift.as_ref().is_some_and(|drift| drift.at(own).is_some()) || seconds > self.left() {
+        let seconds = configuration
+            .cost
+            .zip(configuration.step)
+            .map_or(f64::INFINITY, |(cost, step)| cost * step / own * time);
+        if configuration.drift.as_ref().is_some_and(|drift| drift.at(own).is_some()) || seconds > self.left()
+        {
             return;
         }
         let key = format!("whole run|{label}|{own}");
-        let run = || self.whole_run(way, own, [time, f64::INFINITY]);
+        let run = || self.whole_run(configuration, own, [time, f64::INFINITY]);
         if let Ok(run) = self.journal.recall(&key, |_| true, run) {
-            way.drift.get_or_insert_default().add(own, run.farthest);
+            configuration.drift.get_or_insert_default().add(own, run.farthest);
         }
     }
 
@@ -127,17 +140,17 @@ impl SceneTrials<'_> {
     /// another start with 95 % confidence is returned.
     fn whole_run(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         step: f64,
         [time, wanted]: [f64; 2],
     ) -> Result<DeviationRun, MissingRun> {
-        let first = self.run_of_start(way, step, time, 0)?;
+        let first = self.run_of_start(configuration, step, time, 0)?;
         if self.case.prepared.seed.is_none() || first.farthest > wanted {
             return Ok(first);
         }
         let others: Vec<u64> = (1..STARTS).collect();
         let others: Result<Vec<DeviationRun>, MissingRun> =
-            run_in_parallel(&others, |&number| self.run_of_start(way, step, time, number));
+            run_in_parallel(&others, |&number| self.run_of_start(configuration, step, time, number));
         let Ok(others) = others else {
             return Ok(DeviationRun { farthest: MARGIN * first.farthest, ..first });
         };
@@ -148,7 +161,7 @@ impl SceneTrials<'_> {
     /// Runs a numbered start; a run that fails has an infinite deviation.
     fn run_of_start(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         step: f64,
         time: f64,
         number: u64,
@@ -158,9 +171,10 @@ impl SceneTrials<'_> {
             return Err(MissingRun(NO_TIME.to_owned()));
         }
         let observed = (self.case.entry.quantities, self.target.place);
-        let sample = self.another_start(&way.overrides, Some(step), number).ok().and_then(|prepared| {
-            self.trial.sample(&prepared, observed, SampleSpan::Time(time, Some(left))).ok()
-        });
+        let sample =
+            self.another_start(&configuration.overrides, Some(step), number).ok().and_then(|prepared| {
+                self.trial.sample(&prepared, observed, SampleSpan::Time(time, Some(left))).ok()
+            });
         let sample = match sample {
             Some(sample) => sample,
             None if self.left() == 0.0 => return Err(MissingRun(NO_TIME.to_owned())),
@@ -182,54 +196,76 @@ impl SceneTrials<'_> {
     }
 
     /// Returns index and step of the run that is expected to reach the error most cheaply; none where no time is left for it.
-    fn next_run(&self, ways: &[MeasuredConfiguration], [time, own]: [f64; 2]) -> Option<(usize, f64)> {
-        let wanted = self.target_deviation(ways, own);
-        let seconds = |way: &MeasuredConfiguration, step: f64| Some(way.cost? * way.step? / step * time);
-        let reached = |way: &MeasuredConfiguration| seconds(way, way.drift.as_ref()?.step_for(wanted)?.step);
-        let best = ways.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
+    fn next_run(
+        &self,
+        configurations: &[MeasuredConfiguration],
+        [time, own]: [f64; 2],
+    ) -> Option<(usize, f64)> {
+        let wanted = self.target_deviation(configurations, own);
+        let seconds = |configuration: &MeasuredConfiguration, step: f64| {
+            Some(configuration.cost? * configuration.step? / step * time)
+        };
+        let reached = |configuration: &MeasuredConfiguration| {
+            seconds(configuration, configuration.drift.as_ref()?.step_for(wanted)?.step)
+        };
+        let best = configurations.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
         // Among configurations that differ in cost alone, only the cheapest is tried.
-        let is_dearer = |way: &MeasuredConfiguration, other: &MeasuredConfiguration| {
-            let [own, others] = [way, other].map(|it| self.choice(it));
+        let is_dearer = |configuration: &MeasuredConfiguration, other: &MeasuredConfiguration| {
+            let [own, others] = [configuration, other].map(|it| self.choice(it));
             let is_alike =
                 own.agrees_on(&others, ChoiceEffect::Order) && own.agrees_on(&others, ChoiceEffect::Digits);
             let cost = |it: &MeasuredConfiguration| Some(it.cost? * it.step?);
-            other.dropped.is_none() && is_alike && cost(other).zip(cost(way)).is_some_and(|(b, a)| b < a)
+            other.dropped.is_none()
+                && is_alike
+                && cost(other).zip(cost(configuration)).is_some_and(|(b, a)| b < a)
         };
-        let is_cheapest = |way: &MeasuredConfiguration| {
-            way.drift.is_some() || !ways.iter().any(|other| is_dearer(way, other))
+        let is_cheapest = |configuration: &MeasuredConfiguration| {
+            configuration.drift.is_some()
+                || !configurations.iter().any(|other| is_dearer(configuration, other))
         };
-        let is_tried = |way: &MeasuredConfiguration| way.dropped.is_none() && is_cheapest(way);
+        let is_tried = |configuration: &MeasuredConfiguration| {
+            configuration.dropped.is_none() && is_cheapest(configuration)
+        };
         // Rounding is far below the error of a step: lower precisions begin at the step at which the highest precision reaches the error.
         let finest = self.case.own.with(self.case.entry.trials?.references[0]);
-        let of_finest = |way: &MeasuredConfiguration| {
-            let own = self.choice(way);
+        let of_finest = |configuration: &MeasuredConfiguration| {
+            let own = self.choice(configuration);
             let leads = |other: &&MeasuredConfiguration| {
                 let other_choice = self.choice(other);
                 let is_finest = other_choice.agrees_on(&finest, ChoiceEffect::Digits);
                 is_tried(other) && is_finest && other_choice.agrees_on(&own, ChoiceEffect::Order)
             };
-            ways.iter().find(leads).filter(|leader| leader.label != way.label)
+            configurations.iter().find(leads).filter(|leader| leader.label != configuration.label)
         };
-        let first = |way: &MeasuredConfiguration| match of_finest(way) {
+        let first = |configuration: &MeasuredConfiguration| match of_finest(configuration) {
             Some(leader) => Some(leader.drift.as_ref()?.step_for(wanted)?.step),
             None => Some(rounded(LONGEST * own, 4)),
         };
-        let runs = ways.iter().enumerate().filter(|(_, way)| is_tried(way)).filter_map(|(at, way)| {
-            let step = way.drift.as_ref().map_or_else(|| first(way), |drift| drift.next_step(wanted))?;
-            let enough = way.drift.as_ref().and_then(|drift| drift.expected_step(wanted));
-            let [now, expected] = [step, enough.unwrap_or(step).min(step)].map(|step| seconds(way, step));
-            Some((at, step, now?, expected?))
-        });
+        let runs = configurations
+            .iter()
+            .enumerate()
+            .filter(|(_, configuration)| is_tried(configuration))
+            .filter_map(|(at, configuration)| {
+                let step = configuration
+                    .drift
+                    .as_ref()
+                    .map_or_else(|| first(configuration), |drift| drift.next_step(wanted))?;
+                let enough = configuration.drift.as_ref().and_then(|drift| drift.expected_step(wanted));
+                let [now, expected] =
+                    [step, enough.unwrap_or(step).min(step)].map(|step| seconds(configuration, step));
+                Some((at, step, now?, expected?))
+            });
         let fits = |run: &(usize, f64, f64, f64)| run.3 < best && run.2 < best && run.2 <= self.left();
         let next = runs.filter(fits).min_by(|a, b| a.3.total_cmp(&b.3))?;
         Some((next.0, next.1))
     }
 
     /// Target error of a run: the requested one, or the scene's own once it is known.
-    fn target_deviation(&self, ways: &[MeasuredConfiguration], own: f64) -> f64 {
+    fn target_deviation(&self, configurations: &[MeasuredConfiguration], own: f64) -> f64 {
         let of_own = || {
-            let own_way = ways.iter().find(|way| way.label == self.case.own.label());
-            own_way.and_then(|way| way.drift.as_ref()?.at(own))
+            let own_way =
+                configurations.iter().find(|configuration| configuration.label == self.case.own.label());
+            own_way.and_then(|configuration| configuration.drift.as_ref()?.at(own))
         };
         self.target.error.map(|width| in_unit(width, 1.0)).or_else(of_own).unwrap_or(WANTED)
     }

@@ -49,7 +49,7 @@ pub(crate) struct MeasuredConfiguration {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Findings {
     /// Configurations by cost, dropped ones last.
-    pub ways: Vec<MeasuredConfiguration>,
+    pub configurations: Vec<MeasuredConfiguration>,
     pub mean: MeanEstimate,
     /// Label of the configuration that measured the mean.
     pub(crate) mean_way: String,
@@ -143,14 +143,14 @@ impl SceneTrials<'_> {
 
     pub(super) fn sample_over(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         step: Option<f64>,
         span: SampleSpan,
     ) -> Result<TrialSample, String> {
         if self.left() == 0.0 {
             return Err(NO_TIME.to_owned());
         }
-        let prepared = self.prepared(&way.overrides, step)?;
+        let prepared = self.prepared(&configuration.overrides, step)?;
         let span = span.within(self.left());
         let observed = (self.case.entry.quantities, self.target.place);
         self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what_and_when()))
@@ -164,13 +164,15 @@ impl SceneTrials<'_> {
         if self.trial.stop.load(Ordering::Relaxed) { Err(ExplainError::Stopped) } else { Ok(made) }
     }
 
-    pub(super) fn choice(&self, way: &MeasuredConfiguration) -> SettingChoice {
-        way.choice(self.case)
+    pub(super) fn choice(&self, configuration: &MeasuredConfiguration) -> SettingChoice {
+        configuration.choice(self.case)
     }
 }
 
 /// Sorts configurations by cost, dropped ones last.
-pub(super) fn sort_by_cost(ways: &mut [MeasuredConfiguration]) {
-    let key = |way: &MeasuredConfiguration| (way.dropped.is_some(), way.cost.unwrap_or(f64::INFINITY));
-    ways.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
+pub(super) fn sort_by_cost(configurations: &mut [MeasuredConfiguration]) {
+    let key = |configuration: &MeasuredConfiguration| {
+        (configuration.dropped.is_some(), configuration.cost.unwrap_or(f64::INFINITY))
+    };
+    configurations.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
 }

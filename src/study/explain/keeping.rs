@@ -24,33 +24,39 @@ pub(crate) fn conserved_quantity_plan(
     findings: &Findings,
     origin: &str,
 ) -> Result<RunPlan, Unreached> {
-    let usable = || findings.ways.iter().filter(|way| way.dropped.is_none());
+    let usable = || findings.configurations.iter().filter(|configuration| configuration.dropped.is_none());
     let time = case.duration().unwrap_or(0.0);
-    let of_own = findings.ways.iter().find(|way| way.label == case.own.label());
-    let own_error = of_own.and_then(|way| way.drift.as_ref()?.at(case.step()?));
+    let of_own = findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
+    let own_error = of_own.and_then(|configuration| configuration.drift.as_ref()?.at(case.step()?));
     let error = target.error.map(|width| in_unit(width, 1.0));
     let wanted = error.or(own_error).unwrap_or(WANTED);
-    let costs = |way: &MeasuredConfiguration, step: f64| {
-        Some(findings.start + findings.row_seconds(time) + way.cost? * way.step? / step * time)
+    let costs = |configuration: &MeasuredConfiguration, step: f64| {
+        Some(
+            findings.start
+                + findings.row_seconds(time)
+                + configuration.cost? * configuration.step? / step * time,
+        )
     };
     let mut weighed: Vec<PlanCandidate<'_>> = usable()
-        .filter_map(|way| {
-            let found = way.drift.as_ref()?.step_for(wanted)?;
+        .filter_map(|configuration| {
+            let found = configuration.drift.as_ref()?.step_for(wanted)?;
             let optimum = Optimum {
-                part: found.step / way.step?,
+                part: found.step / configuration.step?,
                 bias: BiasEstimate::exactly(found.farthest),
                 time,
-                seconds: costs(way, found.step)?,
+                seconds: costs(configuration, found.step)?,
             };
-            Some(PlanCandidate { way, optimum })
+            Some(PlanCandidate { configuration, optimum })
         })
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
-    let least = usable().filter_map(|way| Some(way.drift.as_ref()?.least()));
+    let least = usable().filter_map(|configuration| Some(configuration.drift.as_ref()?.least()));
     let least = least.fold(f64::INFINITY, f64::min);
     let Some(best) = weighed.first() else {
-        let expected = usable().filter_map(|way| costs(way, way.drift.as_ref()?.expected_step(wanted)?));
+        let expected = usable().filter_map(|configuration| {
+            costs(configuration, configuration.drift.as_ref()?.expected_step(wanted)?)
+        });
         let expected = expected.reduce(f64::min);
         return Err(Unreached { expected, ..Unreached::of(wanted, least) });
     };
@@ -58,16 +64,16 @@ pub(crate) fn conserved_quantity_plan(
     if likely > target.limit {
         return Err(Unreached { takes: Some([likely, target.limit]), ..Unreached::of(wanted, least) });
     }
-    let step = best.way.step.map(|step| best.optimum.part * step);
+    let step = best.configuration.step.map(|step| best.optimum.part * step);
     let length = RunLength { time, seeds: 1, seconds: likely, why: String::new() };
     let mut decisions = decisions(case, findings, &weighed, &length, (wanted, None));
     decisions.truncate(case.entry.axes.len());
-    let drift = best.way.drift.as_ref();
+    let drift = best.configuration.drift.as_ref();
     decisions.extend(drift.zip(step).map(|(drift, step)| step_of(drift, step, time)));
     Ok(RunPlan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
-        way: best.way.label.clone(),
+        configuration: best.configuration.label.clone(),
         quantity: target.quantity.name,
         unit: target.quantity.unit,
         mean: None,
@@ -84,10 +90,10 @@ pub(crate) fn conserved_quantity_plan(
         transient: 0.0,
         seeds: 1,
         starts_differ: None,
-        overrides: overrides(case, best.way, step, (None, 0.0)),
-        own: of_own.zip(case.step()).and_then(|(way, step)| {
+        overrides: overrides(case, best.configuration, step, (None, 0.0)),
+        own: of_own.zip(case.step()).and_then(|(configuration, step)| {
             let error = BiasEstimate::exactly(own_error.unwrap_or(f64::NAN));
-            Some(OwnResult { seconds: costs(way, step)?, error: ExpectedError::of(error, 0.0) })
+            Some(OwnResult { seconds: costs(configuration, step)?, error: ExpectedError::of(error, 0.0) })
         }),
         left_out: vec![],
         origin: origin.to_owned(),

@@ -145,7 +145,7 @@ impl PlanCache {
         if file.host != self.host || file.seconds < seconds {
             return Ok(None);
         }
-        restore_overrides(&mut file.findings.ways, case);
+        restore_overrides(&mut file.findings.configurations, case);
         let taken = significant(file.taken, 2);
         let origin = format!("kept from {} ({taken} s of trials on {})", file.moment, file.host);
         Ok(Some((file.findings, origin)))

@@ -15,24 +15,24 @@ pub(super) const SAMPLES: f64 = LIKELY_ENOUGH;
 
 /// A configuration with its cheapest step and time for the error.
 pub(super) struct PlanCandidate<'w> {
-    pub(super) way: &'w MeasuredConfiguration,
+    pub(super) configuration: &'w MeasuredConfiguration,
     pub(super) optimum: Optimum,
 }
 
 /// Cheapest step and time of a configuration. Without a time step its bias is zero; with a step and no measured bias it is skipped.
 pub(super) fn cheapest_optimum(
-    way: &MeasuredConfiguration,
+    configuration: &MeasuredConfiguration,
     findings: &Findings,
     chance: &StatisticalError,
     wanted: f64,
 ) -> Option<Optimum> {
     let terms = CostTerms {
-        cost: way.cost?,
+        cost: configuration.cost?,
         rows: findings.row * findings.mean.rows(),
         transient: findings.mean.transient,
     };
     let time_for = |bar| chance.time_for(bar);
-    match (way.step, way.bias) {
+    match (configuration.step, configuration.bias) {
         (None, _) => cheapest_step_and_time(terms, (wanted, 1.0), |_, _| BiasEstimate::default(), time_for),
         (Some(step), Some(bias)) => {
             let shortest = if bias.is_significant() || bias.creep > 0.0 { SHORTEST } else { UNBIASED };
@@ -127,7 +127,7 @@ fn length_of_whole_runs(
     if seeds > 1.0 && case.prepared.seed.is_none() {
         return Err(best.optimum.bias.with_statistical_error(chance));
     }
-    let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
+    let cost = best.configuration.cost.unwrap_or(0.0) / best.optimum.part;
     let threads = findings.threads as f64;
     let (together, one_thread) = if seeds > 1.0 { (threads, findings.one_thread) } else { (1.0, 1.0) };
     let rounds = (seeds / together).ceil();
@@ -151,7 +151,7 @@ fn length_of_stretches(case: &StudyCase, best: &PlanCandidate<'_>, findings: &Fi
         _ => SAMPLES * findings.mean.apart,
     };
     let time = best.optimum.time.max(transient).max(least);
-    let cost = best.way.cost.unwrap_or(0.0) / best.optimum.part;
+    let cost = best.configuration.cost.unwrap_or(0.0) / best.optimum.part;
     let seconds = |time: f64, cost: f64| findings.start + findings.row_seconds(time) + cost * time;
     let together = seconds(time + transient, cost);
     let threads = findings.threads as f64;

@@ -32,7 +32,7 @@ const DEAD: f64 = 1e-3;
 pub(super) struct TrialMean {
     pub(super) known: MeanEstimate,
     /// Label of the configuration.
-    pub(super) way: String,
+    pub(super) configuration: String,
     /// Wall seconds until the first step, and of a row.
     pub(super) start: f64,
     pub(super) row: f64,
@@ -55,21 +55,25 @@ pub(super) struct TrialMean {
 
 impl SceneTrials<'_> {
     /// Measures the mean with the cheapest configuration. Configurations that fail or raise warnings get shorter steps, or are dropped.
-    pub(super) fn mean(&mut self, ways: &mut [MeasuredConfiguration]) -> Result<TrialMean, ExplainError> {
+    pub(super) fn mean(
+        &mut self,
+        configurations: &mut [MeasuredConfiguration],
+    ) -> Result<TrialMean, ExplainError> {
         let mut seconds = self.shares[1] * self.seconds;
         let kept_back = self.shares[2] * self.seconds;
-        let mut enough = self.for_whole_run(&ways[0]);
-        self.as_it_stands = self.run_as_it_stands(ways);
+        let mut enough = self.for_whole_run(&configurations[0]);
+        self.as_it_stands = self.run_as_it_stands(configurations);
         let (mut attempt, mut halvings, mut is_scout) = (0, 0, true);
-        let as_timed = ways.to_vec();
+        let as_timed = configurations.to_vec();
         // The scene is undefined beyond a requested window, and beyond its own end where longer runs fail at any step.
         let mut end = self.target.window.map(|[_, end]| end);
         loop {
-            super::findings::sort_by_cost(ways);
-            let best = ways[0].clone();
+            super::findings::sort_by_cost(configurations);
+            let best = configurations[0].clone();
             if best.dropped.is_some() {
-                let tried =
-                    ways.iter().map(|way| (way.label.clone(), way.dropped.clone().unwrap_or_default()));
+                let tried = configurations.iter().map(|configuration| {
+                    (configuration.label.clone(), configuration.dropped.clone().unwrap_or_default())
+                });
                 return Err(ExplainError::EveryWayFails(tried.collect()));
             }
             if !is_scout {
@@ -80,12 +84,12 @@ impl SceneTrials<'_> {
             let sample = match self.sample_over(&best, best.step, span) {
                 Ok(sample) => sample,
                 Err(_) if halvings == ALIKE && end.is_none() && self.goes_beyond(&best, share) => {
-                    ways.clone_from_slice(&as_timed);
+                    configurations.clone_from_slice(&as_timed);
                     (end, halvings) = (self.case.duration(), halvings + 1);
                     continue;
                 }
                 Err(failure) if halvings < HALVINGS && self.left() > kept_back => {
-                    self.halve_steps(ways, &best, &failure);
+                    self.halve_steps(configurations, &best, &failure);
                     halvings += 1;
                     continue;
                 }
@@ -95,13 +99,13 @@ impl SceneTrials<'_> {
                 let warned = format!("warning: {}", sample.warning_text());
                 match sample.warnings.iter().any(|warning| warning.check == ROUNDING) {
                     // A shorter step loses more of the motion.
-                    true => self.drop_precision(ways, &best, &warned),
-                    false => self.halve_steps(ways, &best, &warned),
+                    true => self.drop_precision(configurations, &best, &warned),
+                    false => self.halve_steps(configurations, &best, &warned),
                 }
                 halvings += 1;
                 continue;
             }
-            self.rescale_costs(ways, &best, &sample);
+            self.rescale_costs(configurations, &best, &sample);
             if is_scout {
                 is_scout = false;
                 continue;
@@ -129,13 +133,13 @@ impl SceneTrials<'_> {
     }
 
     /// True if a run of some seconds extends beyond the end of the scene's own run.
-    fn goes_beyond(&self, way: &MeasuredConfiguration, seconds: f64) -> bool {
-        self.case.duration().zip(way.cost).is_some_and(|(time, cost)| cost * time < seconds)
+    fn goes_beyond(&self, configuration: &MeasuredConfiguration, seconds: f64) -> bool {
+        self.case.duration().zip(configuration.cost).is_some_and(|(time, cost)| cost * time < seconds)
     }
 
     /// Seconds of a sample, extended to the end of the scene's own run where that is near.
-    fn extended_to_end(&self, way: &MeasuredConfiguration, seconds: f64) -> f64 {
-        let whole = self.case.duration().zip(way.cost).map(|(time, cost)| BEYOND * cost * time);
+    fn extended_to_end(&self, configuration: &MeasuredConfiguration, seconds: f64) -> f64 {
+        let whole = self.case.duration().zip(configuration.cost).map(|(time, cost)| BEYOND * cost * time);
         whole.filter(|&whole| seconds < whole && whole <= LONGER * seconds).unwrap_or(seconds)
     }
 
@@ -147,48 +151,56 @@ impl SceneTrials<'_> {
     /// Measures the mean over whole runs, with states along the sample that showed the quantity changing.
     fn over_whole_runs(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         sample: TrialSample,
         time: f64,
         seconds: f64,
     ) -> Result<TrialMean, ExplainError> {
-        let runs = self.whole_runs(&way.overrides, way.step, (time, Some(&sample)), seconds);
+        let runs =
+            self.whole_runs(&configuration.overrides, configuration.step, (time, Some(&sample)), seconds);
         let known = runs.and_then(|runs| Ok((runs.known?, runs.cost)));
         let (known, cost) = known.map_err(|why| self.no_mean(why, None))?;
-        Ok(TrialMean { cost, ..trial_mean(way, sample, known) })
+        Ok(TrialMean { cost, ..trial_mean(configuration, sample, known) })
     }
 
     /// Halves the step of every configuration with the integrator of one that failed or raised a warning.
     pub(super) fn halve_steps(
         &self,
-        ways: &mut [MeasuredConfiguration],
+        configurations: &mut [MeasuredConfiguration],
         of: &MeasuredConfiguration,
         why: &str,
     ) {
         let choice = self.choice(of);
-        let alike = |way: &&mut MeasuredConfiguration| {
-            way.dropped.is_none() && self.choice(way).agrees_on(&choice, ChoiceEffect::Order)
+        let alike = |configuration: &&mut MeasuredConfiguration| {
+            configuration.dropped.is_none()
+                && self.choice(configuration).agrees_on(&choice, ChoiceEffect::Order)
         };
-        for way in ways.iter_mut().filter(alike) {
-            way.bound = Some(why.to_owned());
-            match way.step {
+        for configuration in configurations.iter_mut().filter(alike) {
+            configuration.bound = Some(why.to_owned());
+            match configuration.step {
                 Some(step) if step > 0.7 * of.step.unwrap_or(step) => {
-                    (way.step, way.cost) = (Some(0.5 * step), way.cost.map(|cost| 2.0 * cost));
-                    way.phases.iter_mut().for_each(|(_, cost)| *cost *= 2.0);
+                    (configuration.step, configuration.cost) =
+                        (Some(0.5 * step), configuration.cost.map(|cost| 2.0 * cost));
+                    configuration.phases.iter_mut().for_each(|(_, cost)| *cost *= 2.0);
                 }
                 Some(_) => {}
-                None => way.dropped = Some(why.to_owned()),
+                None => configuration.dropped = Some(why.to_owned()),
             }
         }
     }
 
     /// Drops every configuration with the precision and integrator of one in which particles stop moving.
-    fn drop_precision(&self, ways: &mut [MeasuredConfiguration], of: &MeasuredConfiguration, why: &str) {
+    fn drop_precision(
+        &self,
+        configurations: &mut [MeasuredConfiguration],
+        of: &MeasuredConfiguration,
+        why: &str,
+    ) {
         let choice = self.choice(of);
-        for way in ways.iter_mut() {
-            let own = self.choice(way);
+        for configuration in configurations.iter_mut() {
+            let own = self.choice(configuration);
             if own.agrees_on(&choice, ChoiceEffect::Order) && own.agrees_on(&choice, ChoiceEffect::Digits) {
-                way.dropped = Some(why.to_owned());
+                configuration.dropped = Some(why.to_owned());
             }
         }
     }
@@ -196,30 +208,31 @@ impl SceneTrials<'_> {
     /// Rescales all costs by that of a run, which differs from the cost of its first stretches.
     fn rescale_costs(
         &self,
-        ways: &mut [MeasuredConfiguration],
+        configurations: &mut [MeasuredConfiguration],
         best: &MeasuredConfiguration,
         sample: &TrialSample,
     ) {
         let slower = sample.cost / best.cost.unwrap_or(sample.cost);
-        for way in ways.iter_mut() {
-            way.cost = way.cost.map(|cost| slower * cost);
-            match way.label == best.label {
-                true => way.phases.clone_from(&sample.phases),
-                false => way.phases.iter_mut().for_each(|(_, cost)| *cost *= slower),
+        for configuration in configurations.iter_mut() {
+            configuration.cost = configuration.cost.map(|cost| slower * cost);
+            match configuration.label == best.label {
+                true => configuration.phases.clone_from(&sample.phases),
+                false => configuration.phases.iter_mut().for_each(|(_, cost)| *cost *= slower),
             }
         }
     }
 
     /// Wall seconds of the scene as it stands, if known.
-    pub(super) fn run_as_it_stands(&self, ways: &[MeasuredConfiguration]) -> Option<f64> {
-        let way = ways.iter().find(|way| way.label == self.case.own.label())?;
-        let longer = way.step.zip(self.case.step()).map_or(1.0, |(longest, own)| longest / own);
-        Some(way.cost? * longer * self.case.duration()?)
+    pub(super) fn run_as_it_stands(&self, configurations: &[MeasuredConfiguration]) -> Option<f64> {
+        let configuration =
+            configurations.iter().find(|configuration| configuration.label == self.case.own.label())?;
+        let longer = configuration.step.zip(self.case.step()).map_or(1.0, |(longest, own)| longest / own);
+        Some(configuration.cost? * longer * self.case.duration()?)
     }
 
     /// Trial time in which a run is as long as the scene's own (s); none where its end is not a time, or its cost is unknown.
-    fn for_whole_run(&self, way: &MeasuredConfiguration) -> Option<f64> {
-        Some(trials_for(self.case.duration()? * way.cost?))
+    fn for_whole_run(&self, configuration: &MeasuredConfiguration) -> Option<f64> {
+        Some(trials_for(self.case.duration()? * configuration.cost?))
     }
 
     /// Trial time that is long enough for a mean (s), estimated from a sample that was too short.
@@ -240,7 +253,7 @@ impl SceneTrials<'_> {
     }
 }
 
-fn trial_mean(way: &MeasuredConfiguration, sample: TrialSample, known: MeanEstimate) -> TrialMean {
+fn trial_mean(configuration: &MeasuredConfiguration, sample: TrialSample, known: MeanEstimate) -> TrialMean {
     let after = |states: &&(f64, Particles)| states.0 >= known.transient;
     // If hardly any state is after the transient, states before it are used too.
     let first = match sample.states.iter().filter(after).count() {
@@ -249,12 +262,12 @@ fn trial_mean(way: &MeasuredConfiguration, sample: TrialSample, known: MeanEstim
     };
     TrialMean {
         known,
-        way: way.label.clone(),
+        configuration: configuration.label.clone(),
         start: sample.start,
         row: sample.row,
         cost: sample.cost,
-        step: way.step,
-        step_cost: sample.cost * way.step.unwrap_or(f64::NAN),
+        step: configuration.step,
+        step_cost: sample.cost * configuration.step.unwrap_or(f64::NAN),
         transients: vec![known.transient],
         states: sample.states.into_iter().skip(first).map(|(_, state)| state).collect(),
         rows: sample.rows,

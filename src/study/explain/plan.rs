@@ -29,28 +29,37 @@ pub(crate) fn plan(
     origin: &str,
 ) -> Result<RunPlan, Unreached> {
     let mean = &findings.mean;
-    let own_way = findings.ways.iter().find(|way| way.label == case.own.label());
-    let own = own_way.and_then(|way| own(case, way, findings));
+    let own_way =
+        findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
+    let own = own_way.and_then(|configuration| own(case, configuration, findings));
     let error = target.error.map(|width| in_unit(width, mean.mean));
     // Without a target error the plan matches the error of the scene's own values.
     let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);
     let wanted = error.or(of_own).unwrap_or(0.01 * mean.mean.abs());
-    let usable = |way: &&MeasuredConfiguration| way.cost.is_some() && way.dropped.is_none();
+    let usable = |configuration: &&MeasuredConfiguration| {
+        configuration.cost.is_some() && configuration.dropped.is_none()
+    };
     let chance = findings.chance();
     let mut weighed: Vec<PlanCandidate<'_>> = findings
-        .ways
+        .configurations
         .iter()
         .filter(usable)
-        .filter_map(|way| {
-            Some(PlanCandidate { way, optimum: cheapest_optimum(way, findings, &chance, wanted)? })
+        .filter_map(|configuration| {
+            Some(PlanCandidate {
+                configuration,
+                optimum: cheapest_optimum(configuration, findings, &chance, wanted)?,
+            })
         })
         .collect();
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
     let Some(best) = weighed.first() else {
         // Only the bias at the shortest step considered is left.
-        let least = |way: &MeasuredConfiguration| Some(way.bias?.at(SHORTEST * way.step?).shift);
-        let least = findings.ways.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
+        let least = |configuration: &MeasuredConfiguration| {
+            Some(configuration.bias?.at(SHORTEST * configuration.step?).shift)
+        };
+        let least =
+            findings.configurations.iter().filter(usable).filter_map(least).fold(f64::INFINITY, f64::min);
         return Err(Unreached { known: mean.bar, ..Unreached::of(wanted, least) });
     };
     let unreached = |least: f64| Unreached { known: mean.bar, ..Unreached::of(wanted, least) };
@@ -61,14 +70,14 @@ pub(crate) fn plan(
         let least = best.optimum.bias.with_statistical_error(chance.over(left));
         return Err(Unreached { takes: Some([length.seconds, target.limit]), ..unreached(least) });
     }
-    let step = best.way.step.map(|step| best.optimum.part * step);
+    let step = best.configuration.step.map(|step| best.optimum.part * step);
     let per_run = findings.whole.unwrap_or(length.time / length.seeds as f64 + mean.transient);
     let expected = ExpectedError::of(best.optimum.bias, chance.over(length.time));
     let seconds = LikelyRange::within(length.seconds, TIME_WITHIN);
     Ok(RunPlan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
-        way: best.way.label.clone(),
+        configuration: best.configuration.label.clone(),
         quantity: target.quantity.name,
         unit: target.quantity.unit,
         mean: Some([mean.mean, mean.bar]),
@@ -85,7 +94,7 @@ pub(crate) fn plan(
         transient: mean.transient,
         seeds: length.seeds,
         starts_differ: findings.starts_differ,
-        overrides: overrides(case, best.way, step, (Some(per_run), mean.every)),
+        overrides: overrides(case, best.configuration, step, (Some(per_run), mean.every)),
         own,
         left_out: left_out(findings, wanted, mean.mean),
         origin: origin.to_owned(),
@@ -99,7 +108,7 @@ pub(super) fn prefer(weighed: &mut [PlanCandidate<'_>], case: &StudyCase) {
     let own = case.own.label();
     let order: Vec<String> = SettingChoice::all(case.entry.axes).iter().map(SettingChoice::label).collect();
     let place = |it: &PlanCandidate<'_>| {
-        let label = &it.way.label;
+        let label = &it.configuration.label;
         (*label != own, order.iter().position(|known| known == label).unwrap_or(usize::MAX))
     };
     let tied = weighed.iter().take_while(|it| it.optimum.seconds <= TIE * cheapest).count();
@@ -111,17 +120,17 @@ pub(super) fn prefer(weighed: &mut [PlanCandidate<'_>], case: &StudyCase) {
 /// Wall seconds of a run in each phase.
 pub(super) fn phases(best: &PlanCandidate<'_>, time: f64) -> Vec<(String, f64)> {
     let scaled = |(name, cost): &(String, f64)| (name.clone(), cost / best.optimum.part * time);
-    best.way.phases.iter().map(scaled).collect()
+    best.configuration.phases.iter().map(scaled).collect()
 }
 
 /// Returns the overrides of a plan: its step, run time and time between rows (time; 0 where that does not matter).
 pub(super) fn overrides(
     case: &StudyCase,
-    way: &MeasuredConfiguration,
+    configuration: &MeasuredConfiguration,
     step: Option<f64>,
     (time, every): (Option<f64>, f64),
 ) -> Overrides {
-    let mut overrides = way.overrides.clone();
+    let mut overrides = configuration.overrides.clone();
     // The run uses the step as printed.
     let step = step.map(|step| rounded(step, 4));
     if let (Some(trials), Some(step)) = (case.entry.trials, step) {
@@ -169,16 +178,16 @@ pub(crate) fn in_unit(width: Width, mean: f64) -> f64 {
     }
 }
 
-fn own(case: &StudyCase, way: &MeasuredConfiguration, findings: &Findings) -> Option<OwnResult> {
+fn own(case: &StudyCase, configuration: &MeasuredConfiguration, findings: &Findings) -> Option<OwnResult> {
     let (time, step) = (case.duration()?, case.step());
-    let cost = way.cost? * way.step.zip(step).map_or(1.0, |(longest, own)| longest / own);
+    let cost = configuration.cost? * configuration.step.zip(step).map_or(1.0, |(longest, own)| longest / own);
     // The bias is that of the scene's own integrator, in any precision that was measured.
     let is_alike = |it: &&MeasuredConfiguration| {
         it.settings.iter().any(|(name, setting)| {
-            name == "integrator" && way.settings.contains(&(name.clone(), setting.clone()))
+            name == "integrator" && configuration.settings.contains(&(name.clone(), setting.clone()))
         })
     };
-    let bias = findings.ways.iter().filter(is_alike).find_map(|it| it.bias);
+    let bias = findings.configurations.iter().filter(is_alike).find_map(|it| it.bias);
     let bias = match (bias, step) {
         (Some(bias), Some(step)) => bias.over(step, time),
         (None, Some(_)) => BiasEstimate::exactly(f64::NAN),

@@ -46,7 +46,7 @@ pub(crate) struct RunPlan {
     pub scene: String,
     pub method: &'static str,
     /// Label of the configuration: its settings.
-    pub way: String,
+    pub configuration: String,
     pub quantity: &'static str,
     /// Unit of the quantity, empty for a pure number.
     pub unit: &'static str,

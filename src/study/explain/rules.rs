@@ -26,8 +26,8 @@ fn asking(case: &StudyCase, error: f64) -> PlanTarget {
 }
 
 /// Configurations at the scene's own step, and a mean of 1.
-fn findings(case: &StudyCase, ways: &[ConfigurationCase<'_>], mean: MeanEstimate) -> Findings {
-    let way = |(choice, cost, bias): &ConfigurationCase<'_>| MeasuredConfiguration {
+fn findings(case: &StudyCase, configurations: &[ConfigurationCase<'_>], mean: MeanEstimate) -> Findings {
+    let configuration = |(choice, cost, bias): &ConfigurationCase<'_>| MeasuredConfiguration {
         label: choice.label(),
         settings: choice.settings().map(|(axis, name)| (axis.to_owned(), name.to_owned())).collect(),
         overrides: choice.overrides(),
@@ -41,7 +41,7 @@ fn findings(case: &StudyCase, ways: &[ConfigurationCase<'_>], mean: MeanEstimate
         dropped: None,
     };
     Findings {
-        ways: ways.iter().map(way).collect(),
+        configurations: configurations.iter().map(configuration).collect(),
         mean,
         mean_way: String::new(),
         whole: None,
@@ -89,7 +89,7 @@ fn plan_is_never_worse_than_the_scene() {
         let plan = plan_or_scene(&case, &asking(&case, error), &found, "trials").unwrap();
         let page = page(&plan);
         let expected = if is_better { other.label() } else { case.own.label() };
-        assert_eq!(plan.way, expected, "{page}");
+        assert_eq!(plan.configuration, expected, "{page}");
         let seconds = if is_better { cost * time } else { time };
         assert!((plan.seconds.likely / seconds - 1.0).abs() < 1e-6, "{page}");
         assert!(plan.expected.most <= error * (1.0 + 1e-12), "{page}");
@@ -156,7 +156,7 @@ fn trials_on_a_synthetic_clock_are_reproducible() {
                 (&|_| {}, &Journal::none()),
             )
             .unwrap();
-            found.ways.iter_mut().for_each(|way| way.phases.clear());
+            found.configurations.iter_mut().for_each(|configuration| configuration.phases.clear());
             serde_json::to_string(&found).unwrap()
         };
         let first = made();

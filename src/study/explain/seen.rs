@@ -27,19 +27,19 @@ fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findin
     let begun = work.trial.watch.now();
     let tell = |work: &SceneTrials<'_>| progress(((work.trial.watch.now() - begun) / work.seconds).min(1.0));
     let journal = work.journal;
-    let timed = || work.unless_stopped(work.timed_ways()?);
-    let mut ways: Vec<MeasuredConfiguration> = journal.recall("costs", |_| true, timed)?;
-    restore_overrides(&mut ways, work.case);
+    let timed = || work.unless_stopped(work.timed_configurations()?);
+    let mut configurations: Vec<MeasuredConfiguration> = journal.recall("costs", |_| true, timed)?;
+    restore_overrides(&mut configurations, work.case);
     tell(work);
     if work.target.is_kept() {
-        return work.measure_deviations(ways);
+        return work.measure_deviations(configurations);
     }
-    let known = journal.recall("means", |_| true, || work.compared(ways, &tell))?;
-    let MeasuredBiases { mut ways, mut mean, whole } = known;
-    restore_overrides(&mut ways, work.case);
+    let known = journal.recall("means", |_| true, || work.compared(configurations, &tell))?;
+    let MeasuredBiases { mut configurations, mut mean, whole } = known;
+    restore_overrides(&mut configurations, work.case);
     work.whole = whole;
     tell(work);
-    let best = &ways[0];
+    let best = &configurations[0];
     let one_thread = work.one_thread(best);
     let starts_differ = work.starts_differ(best, &mut mean);
     // Transients are mostly detected too late, by a part of the run.
@@ -47,7 +47,7 @@ fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findin
     let without = work.measure_simpler_models(best, &mean);
     work.unless_stopped(Findings {
         mean: mean.known,
-        mean_way: mean.way,
+        mean_way: mean.configuration,
         whole: work.whole,
         starts_differ,
         start: mean.start,
@@ -55,14 +55,14 @@ fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findin
         one_thread,
         threads: rayon::current_num_threads(),
         without,
-        ways,
+        configurations,
     })
 }
 
 /// A mean, and the biases of configurations.
 #[derive(Serialize, Deserialize)]
 struct MeasuredBiases {
-    ways: Vec<MeasuredConfiguration>,
+    configurations: Vec<MeasuredConfiguration>,
     mean: TrialMean,
     whole: Option<f64>,
 }
@@ -70,10 +70,10 @@ struct MeasuredBiases {
 impl SceneTrials<'_> {
     fn compared(
         &mut self,
-        mut ways: Vec<MeasuredConfiguration>,
+        mut configurations: Vec<MeasuredConfiguration>,
         tell: &dyn Fn(&Self),
     ) -> Result<MeasuredBiases, ExplainError> {
-        let mean = self.mean(&mut ways)?;
+        let mean = self.mean(&mut configurations)?;
         tell(self);
         // The trials of the bias may use all remaining time, except the shares of those that follow. Whole runs have no time to spare.
         let kept_back = match self.whole {
@@ -86,16 +86,16 @@ impl SceneTrials<'_> {
             }
         };
         self.end -= kept_back;
-        self.biases(&mut ways, &mean);
+        self.biases(&mut configurations, &mean);
         self.end += kept_back;
-        self.unless_stopped(MeasuredBiases { ways, mean, whole: self.whole })
+        self.unless_stopped(MeasuredBiases { configurations, mean, whole: self.whole })
     }
 }
 
 /// Restores overrides, which are not cached, from settings and skins.
-pub(super) fn restore_overrides(ways: &mut [MeasuredConfiguration], case: &StudyCase) {
-    for way in ways {
-        way.overrides = way.configuration_overrides(case);
+pub(super) fn restore_overrides(configurations: &mut [MeasuredConfiguration], case: &StudyCase) {
+    for configuration in configurations {
+        configuration.overrides = configuration.configuration_overrides(case);
     }
 }
 
@@ -175,11 +175,12 @@ impl Findings {
     /// Shortens the longest steps to a theoretical limit.
     fn limit_steps(&mut self, limit: &StepLimit) {
         let longest = OF_LIMIT * limit.step;
-        for way in &mut self.ways {
-            let Some(step) = way.step.filter(|step| *step > longest) else { continue };
-            (way.step, way.cost) = (Some(longest), way.cost.map(|cost| cost * step / longest));
-            way.phases.iter_mut().for_each(|(_, cost)| *cost *= step / longest);
-            way.bound = Some(bounded(limit));
+        for configuration in &mut self.configurations {
+            let Some(step) = configuration.step.filter(|step| *step > longest) else { continue };
+            (configuration.step, configuration.cost) =
+                (Some(longest), configuration.cost.map(|cost| cost * step / longest));
+            configuration.phases.iter_mut().for_each(|(_, cost)| *cost *= step / longest);
+            configuration.bound = Some(bounded(limit));
         }
     }
 }

@@ -18,10 +18,14 @@ const FEWEST: usize = 8;
 impl SceneTrials<'_> {
     /// Bias of the configuration and step that the mean was measured with, and half the width of its 95 % interval (the quantity's unit). None where
     /// the integrator conserves no shadow energy, or energy enters or leaves.
-    pub(super) fn shadow_bias(&self, way: &MeasuredConfiguration, mean: &TrialMean) -> Option<[f64; 2]> {
+    pub(super) fn shadow_bias(
+        &self,
+        configuration: &MeasuredConfiguration,
+        mean: &TrialMean,
+    ) -> Option<[f64; 2]> {
         let trials = self.case.entry.trials?;
-        let keeps = trials.shadow?.integrators.contains(&self.choice(way).scheme()?.name);
-        (keeps && way.label == mean.way).then(|| self.covariance(trials, mean)).flatten()
+        let keeps = trials.shadow?.integrators.contains(&self.choice(configuration).scheme()?.name);
+        (keeps && configuration.label == mean.configuration).then(|| self.covariance(trials, mean)).flatten()
     }
 
     fn covariance(&self, trials: &Trials, mean: &TrialMean) -> Option<[f64; 2]> {

@@ -12,11 +12,15 @@ const WORTH: f64 = 0.04;
 
 impl SceneTrials<'_> {
     /// Tunes the skin of all configurations with neighbour lists, where lists are the cheapest search.
-    pub(super) fn tune_skin(&self, ways: &mut [MeasuredConfiguration], seconds: f64) {
-        let by_lists = |way: &MeasuredConfiguration| {
-            way.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS)
+    pub(super) fn tune_skin(&self, configurations: &mut [MeasuredConfiguration], seconds: f64) {
+        let by_lists = |configuration: &MeasuredConfiguration| {
+            configuration.settings.iter().any(|(axis, name)| axis == "search" && name == LISTS)
         };
-        let Some(best) = ways.first().filter(|way| by_lists(way) && self.left() > seconds).cloned() else {
+        let Some(best) = configurations
+            .first()
+            .filter(|configuration| by_lists(configuration) && self.left() > seconds)
+            .cloned()
+        else {
             return;
         };
         let Ok(prepared) = self.prepared(&best.overrides, best.step) else { return };
@@ -36,12 +40,12 @@ impl SceneTrials<'_> {
         if least > (1.0 - WORTH) * of_own {
             return;
         }
-        for way in ways.iter_mut().filter(|way| by_lists(way)) {
-            way.overrides = with_skin(way.overrides.clone(), self.case, skin);
-            way.cost = way.cost.map(|cost| cost * least / of_own);
-            way.skin = Some([own, skin, least / of_own]);
+        for configuration in configurations.iter_mut().filter(|configuration| by_lists(configuration)) {
+            configuration.overrides = with_skin(configuration.overrides.clone(), self.case, skin);
+            configuration.cost = configuration.cost.map(|cost| cost * least / of_own);
+            configuration.skin = Some([own, skin, least / of_own]);
         }
-        sort_by_cost(ways);
+        sort_by_cost(configurations);
     }
 }
 

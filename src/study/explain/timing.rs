@@ -28,7 +28,7 @@ impl SceneTrials<'_> {
     ///
     /// The cheapest search or engine is determined with the scene's own integrator and precision, as results are the same; then integrators and
     /// precisions are timed with it.
-    pub(super) fn timed_ways(&self) -> Result<Vec<MeasuredConfiguration>, ExplainError> {
+    pub(super) fn timed_configurations(&self) -> Result<Vec<MeasuredConfiguration>, ExplainError> {
         let all = SettingChoice::all(self.case.entry.axes);
         let own = &self.case.own;
         let of_own_arithmetic = |choice: &&SettingChoice| {
@@ -39,11 +39,16 @@ impl SceneTrials<'_> {
         searches.sort_by_key(|choice| *choice != own);
         let each = self.shares[0] * self.seconds / 2.0;
         let end = |share: f64| self.end.min(self.trial.watch.now() + OVERHEAD * share);
-        let mut ways = self.timed(&searches, each, end(each));
-        drop_expensive(&mut ways);
-        let Some(best) = ways.iter().position(|way| way.cost.is_some()).map(|at| ways[at].label.clone())
+        let mut configurations = self.timed(&searches, each, end(each));
+        drop_expensive(&mut configurations);
+        let Some(best) = configurations
+            .iter()
+            .position(|configuration| configuration.cost.is_some())
+            .map(|at| configurations[at].label.clone())
         else {
-            let tried = ways.into_iter().map(|way| (way.label, way.dropped.unwrap_or_default()));
+            let tried = configurations
+                .into_iter()
+                .map(|configuration| (configuration.label, configuration.dropped.unwrap_or_default()));
             return Err(ExplainError::EveryWayFails(tried.collect()));
         };
         let best = all.iter().find(|choice| choice.label() == best).unwrap_or(own);
@@ -51,10 +56,10 @@ impl SceneTrials<'_> {
             .iter()
             .filter(|choice| choice.agrees_on(best, ChoiceEffect::Cost) && !of_own_arithmetic(choice))
             .collect();
-        ways.extend(self.timed(&others, each, end(each)));
-        sort_by_cost(&mut ways);
-        self.tune_skin(&mut ways, each);
-        Ok(ways)
+        configurations.extend(self.timed(&others, each, end(each)));
+        sort_by_cost(&mut configurations);
+        self.tune_skin(&mut configurations, each);
+        Ok(configurations)
     }
 
     /// Times configurations in a race: all are timed, then the better half again for twice as long each, and so on until the best leads or their
@@ -71,8 +76,8 @@ impl SceneTrials<'_> {
             }
             self.at_longest(choice, each)
         };
-        let mut ways: Vec<MeasuredConfiguration> = choices.iter().map(of).collect();
-        let mut race = Race::of(&ways);
+        let mut configurations: Vec<MeasuredConfiguration> = choices.iter().map(of).collect();
+        let mut race = Race::of(&configurations);
         for _ in 1..ROUNDS {
             race.halve();
             if race.is_decided() {
@@ -83,59 +88,61 @@ impl SceneTrials<'_> {
                 if is_over() {
                     break;
                 }
-                let again = self.prepared(&ways[*at].overrides, ways[*at].step).ok();
+                let again = self.prepared(&configurations[*at].overrides, configurations[*at].step).ok();
                 times.extend(again.and_then(|it| self.trial.timed(&it, each).ok()).map(|it| it.seconds));
-                ways[*at].cost = times.iter().copied().reduce(f64::min);
+                configurations[*at].cost = times.iter().copied().reduce(f64::min);
             }
         }
-        sort_by_cost(&mut ways);
-        ways
+        sort_by_cost(&mut configurations);
+        configurations
     }
 
     /// Times a configuration at the longest step that theory allows and at which it runs.
     fn at_longest(&self, choice: &SettingChoice, seconds: f64) -> MeasuredConfiguration {
-        let mut way = untimed_configuration(choice);
+        let mut configuration = untimed_configuration(choice);
         let own_step = self.case.step();
-        let prepared = match self.prepared(&way.overrides, None) {
+        let prepared = match self.prepared(&configuration.overrides, None) {
             Ok(prepared) => prepared,
             Err(why) => {
-                way.dropped = Some(format!("refused: {why}"));
-                return way;
+                configuration.dropped = Some(format!("refused: {why}"));
+                return configuration;
             }
         };
         let limit = prepared.step_limits.iter().min_by(|a, b| a.step.total_cmp(&b.step));
         let longest = own_step.map(|own| limit.map_or(TIMES_OWN * own, |limit| OF_LIMIT * limit.step));
-        way.bound = limit.map(bounded);
+        configuration.bound = limit.map(bounded);
         let mut step = longest;
         for _ in 0..HALVINGS {
-            let tried = self.prepared(&way.overrides, step).map_err(|why| format!("refused: {why}"));
+            let tried =
+                self.prepared(&configuration.overrides, step).map_err(|why| format!("refused: {why}"));
             let tried = tried.and_then(|prepared| {
                 self.trial.timed(&prepared, seconds).map_err(|failure| first_line(&failure.what_and_when()))
             });
             match tried {
                 Ok(cost) => {
-                    (way.cost, way.step, way.dropped) = (Some(cost.seconds), step, None);
-                    way.phases = cost.phases;
-                    return way;
+                    (configuration.cost, configuration.step, configuration.dropped) =
+                        (Some(cost.seconds), step, None);
+                    configuration.phases = cost.phases;
+                    return configuration;
                 }
-                Err(why) => way.dropped = Some(why),
+                Err(why) => configuration.dropped = Some(why),
             }
             let Some(shorter) = step.map(|step| 0.5 * step) else { break };
-            way.bound = way.dropped.clone();
+            configuration.bound = configuration.dropped.clone();
             step = Some(shorter);
         }
-        way
+        configuration
     }
 
     /// Ratio of the cost with one thread to that with all threads.
-    pub(super) fn one_thread(&self, way: &MeasuredConfiguration) -> f64 {
+    pub(super) fn one_thread(&self, configuration: &MeasuredConfiguration) -> f64 {
         let threads = rayon::current_num_threads();
         let seconds = OF_ONE_THREAD * self.seconds;
         let measured = || {
             if self.left() < 2.0 * seconds {
                 return None;
             }
-            let prepared = self.prepared(&way.overrides, way.step).ok()?;
+            let prepared = self.prepared(&configuration.overrides, configuration.step).ok()?;
             let all = self.trial.timed(&prepared, seconds).ok()?.seconds;
             let pool = ThreadPoolBuilder::new().num_threads(1).build().ok()?;
             Some(pool.install(|| self.trial.timed(&prepared, seconds)).ok()?.seconds / all)
@@ -152,8 +159,11 @@ struct Race {
 }
 
 impl Race {
-    fn of(ways: &[MeasuredConfiguration]) -> Race {
-        let timed = ways.iter().enumerate().filter_map(|(at, way)| Some((at, vec![way.cost?])));
+    fn of(configurations: &[MeasuredConfiguration]) -> Race {
+        let timed = configurations
+            .iter()
+            .enumerate()
+            .filter_map(|(at, configuration)| Some((at, vec![configuration.cost?])));
         Race { racing: timed.collect() }
     }
 
@@ -202,15 +212,16 @@ fn untimed_configuration(choice: &SettingChoice) -> MeasuredConfiguration {
 }
 
 /// Drops configurations that cost more than `DEAR` times the cheapest: their results are the same.
-fn drop_expensive(ways: &mut [MeasuredConfiguration]) {
-    let costs: Vec<f64> = ways.iter().filter_map(|way| way.cost).collect();
+fn drop_expensive(configurations: &mut [MeasuredConfiguration]) {
+    let costs: Vec<f64> = configurations.iter().filter_map(|configuration| configuration.cost).collect();
     let cheapest = least(&costs);
-    for way in ways.iter_mut() {
-        if let Some(cost) = way.cost.filter(|cost| *cost > DEAR * cheapest) {
-            way.dropped = Some(format!("costs {} times the cheapest", significant(cost / cheapest, 2)));
+    for configuration in configurations.iter_mut() {
+        if let Some(cost) = configuration.cost.filter(|cost| *cost > DEAR * cheapest) {
+            configuration.dropped =
+                Some(format!("costs {} times the cheapest", significant(cost / cheapest, 2)));
         }
     }
-    sort_by_cost(ways);
+    sort_by_cost(configurations);
 }
 
 /// Describes a limit in words.

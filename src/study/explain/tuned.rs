@@ -28,8 +28,8 @@ pub(crate) fn tuned_settings(
     let holds =
         |key: &Key, value: &KeyValue| case.values.choice(key).is_none_or(|now| KeyValue::Word(now) == *value);
     // Timed configurations are sorted by cost.
-    for way in findings.ways.iter().filter(|way| way.cost.is_some()) {
-        let choice = way.choice(case);
+    for configuration in findings.configurations.iter().filter(|configuration| configuration.cost.is_some()) {
+        let choice = configuration.choice(case);
         let is_own =
             [ChoiceEffect::Order, ChoiceEffect::Digits].iter().all(|&it| choice.agrees_on(&case.own, it));
         let overrides = choice.overrides();

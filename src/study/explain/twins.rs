@@ -31,7 +31,7 @@ impl SceneTrials<'_> {
     /// Measures every simpler model of the scene.
     pub(super) fn measure_simpler_models(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         mean: &TrialMean,
     ) -> Vec<SimplerModelResult> {
         let reference = &mean.known;
@@ -45,7 +45,7 @@ impl SceneTrials<'_> {
                 failed,
             };
             let measured = match simpler {
-                SimplerScene::Overridden(overrides) => self.overridden(way, &overrides, seconds),
+                SimplerScene::Overridden(overrides) => self.overridden(configuration, &overrides, seconds),
                 SimplerScene::Rewritten(scene) => self.rewritten(scene, seconds),
             };
             match measured {
@@ -66,20 +66,20 @@ impl SceneTrials<'_> {
     /// Measures a model with the same method.
     fn overridden(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         overrides: &Overrides,
         seconds: f64,
     ) -> Result<MeasuredMean, String> {
         let shortest =
             |prepared: &Prepared| prepared.step_limits.iter().map(|limit| limit.step).reduce(f64::min);
-        let of_scene = self.prepared(&way.overrides, None).ok().as_ref().and_then(shortest);
-        let more = way.overrides.clone().and(overrides);
+        let of_scene = self.prepared(&configuration.overrides, None).ok().as_ref().and_then(shortest);
+        let more = configuration.overrides.clone().and(overrides);
         // The step is as far below its own limit as in the scene.
         let longer = shortest(&self.prepared(&more, None)?)
             .zip(of_scene)
             .map_or(1.0, |(own, of_scene)| own / of_scene);
-        let twin = MeasuredConfiguration { overrides: more, ..way.clone() };
-        self.measure_mean(&twin, way.step.map(|step| step * longer), seconds)
+        let twin = MeasuredConfiguration { overrides: more, ..configuration.clone() };
+        self.measure_mean(&twin, configuration.step.map(|step| step * longer), seconds)
     }
 
     /// Measures a model with another method, in its own cheapest configuration.
@@ -92,9 +92,9 @@ impl SceneTrials<'_> {
             return Err(NO_TIME.to_owned());
         }
         let mut work = SceneTrials { case: &case, target: &target, seconds, ..*self };
-        let ways = work.timed_ways().map_err(|error| error.to_string())?;
+        let configurations = work.timed_configurations().map_err(|error| error.to_string())?;
         work.seconds = self.seconds;
-        let measured = work.measure_mean(&ways[0], ways[0].step, seconds)?;
+        let measured = work.measure_mean(&configurations[0], configurations[0].step, seconds)?;
         let in_unit = |known: MeanEstimate| MeanEstimate {
             mean: scene.unit * known.mean,
             bar: scene.unit * known.bar,

@@ -62,15 +62,17 @@ impl SceneTrials<'_> {
     /// Measures the mean after the transient, or over whole runs, and the cost of a unit of time.
     pub(super) fn measure_mean(
         &self,
-        way: &MeasuredConfiguration,
+        configuration: &MeasuredConfiguration,
         step: Option<f64>,
         seconds: f64,
     ) -> Result<MeasuredMean, String> {
         match self.whole {
-            Some(time) => self.whole_runs(&way.overrides, step, (time, None), seconds),
-            None => self.sample_over(way, step, SampleSpan::Seconds(seconds)).map(|sample| MeasuredMean {
-                known: sample.known().ok_or_else(|| sample.missing_mean_reason()),
-                cost: sample.cost,
+            Some(time) => self.whole_runs(&configuration.overrides, step, (time, None), seconds),
+            None => self.sample_over(configuration, step, SampleSpan::Seconds(seconds)).map(|sample| {
+                MeasuredMean {
+                    known: sample.known().ok_or_else(|| sample.missing_mean_reason()),
+                    cost: sample.cost,
+                }
             }),
         }
     }
@@ -180,10 +182,11 @@ mod tests {
         let [_, largest] = before.radii().unwrap();
         for (number, start) in starts.iter().enumerate() {
             for (at, (own, now)) in before.all().iter().zip(start.all()).enumerate() {
-                let way = prepared.domain.displacement(now.planar_position(), own.planar_position());
+                let configuration =
+                    prepared.domain.displacement(now.planar_position(), own.planar_position());
                 let expected = if at < before.grain_count() { DISPLACED * largest } else { 0.0 };
                 assert!(
-                    (way[0].hypot(way[1]) - expected).abs() < 1e-3 * DISPLACED * largest,
+                    (configuration[0].hypot(configuration[1]) - expected).abs() < 1e-3 * DISPLACED * largest,
                     "{number}, {at}"
                 );
             }

@@ -56,7 +56,7 @@ struct Contest {
     system: String,
     particles: u64,
     /// Search, precision and integrator of ours.
-    way: String,
+    configuration: String,
     /// Rates of each round.
     ours: Vec<f64>,
     theirs: Vec<f64>,
@@ -137,7 +137,7 @@ fn contests(all: &[RivalProgram]) -> ResultFrame {
         .text("beside", |(rival, _)| &rival.rival)
         .text("system", |(_, it)| &it.system)
         .count("particles", |(_, it)| it.particles)
-        .text("our way", |(_, it)| &it.way)
+        .text("our configuration", |(_, it)| &it.configuration)
         .number("ours", 2, |(_, it)| middle(&it.ours))
         .number("theirs", 2, |(_, it)| middle(&it.theirs))
         .number("ratio", 2, |(_, it)| it.ratio())
@@ -151,7 +151,7 @@ fn fastest(all: &[RivalProgram]) -> ResultFrame {
     let mut best: Vec<(&RivalProgram, &str, &Contest)> = vec![];
     for rival in all {
         for precision in ["f64", "f32"] {
-            for it in rival.contests.iter().filter(|it| it.way.contains(precision)) {
+            for it in rival.contests.iter().filter(|it| it.configuration.contains(precision)) {
                 let alike = |known: &&mut (&RivalProgram, &str, &Contest)| {
                     (&known.0.rival, known.1, &known.2.system, known.2.particles)
                         == (&rival.rival, precision, &it.system, it.particles)
@@ -171,7 +171,7 @@ fn fastest(all: &[RivalProgram]) -> ResultFrame {
         .number("packing fraction", 2, |(.., it)| it.packing_fraction())
         .text("precision", |(_, precision, _)| *precision)
         .count("particles", |(.., it)| it.particles)
-        .text("our configuration", |(.., it)| &it.way)
+        .text("our configuration", |(.., it)| &it.configuration)
         .number("ratio", 2, |(.., it)| it.ratio())
         .number("lowest", 2, |(.., it)| it.lowest())
         .number("highest", 2, |(.., it)| it.highest())

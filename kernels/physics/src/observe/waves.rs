@@ -87,12 +87,12 @@ fn powers(amplitudes: &[[f64; 2]]) -> [f64; 3] {
     for frequency in 0..times {
         let [re, im] = transform(frequency, amplitudes.iter().copied());
         // Frequencies above the half are negative ones.
-        let way = match frequency {
+        let index = match frequency {
             0 => 1,
             _ if 2 * frequency < times => 0,
             _ => 2,
         };
-        powers[way] += re * re + im * im;
+        powers[index] += re * re + im * im;
     }
     powers
 }

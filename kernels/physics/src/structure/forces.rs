@@ -72,14 +72,15 @@ impl<'a> InteractingDiscs<'a> {
                     let span = cells.span(row, up, cells.x[own], half);
                     let first = if up == 0 { own + 1 } else { span.start };
                     for other in first..span.end {
-                        let way = [cells.x[own] - cells.x[other], cells.y[own] - cells.y[other]];
+                        let displacement = [cells.x[own] - cells.x[other], cells.y[own] - cells.y[other]];
                         let numbers = [own, other].map(|at| cells.number[at] as usize);
                         let discs = numbers.map(|number| &particles[number]);
-                        let is_near = way[0] * way[0] + way[1] * way[1] < forces.reach * forces.reach;
+                        let is_near = displacement[0] * displacement[0] + displacement[1] * displacement[1]
+                            < forces.reach * forces.reach;
                         if is_near && discs.iter().any(|disc| disc.kind == ParticleKind::Grain) {
                             let [one, two] = discs.map(body);
-                            let pair = Pair { bodies: [PairBody { position: way, ..one }, two] };
-                            each(numbers, way, (forces.of)(&pair));
+                            let pair = Pair { bodies: [PairBody { position: displacement, ..one }, two] };
+                            each(numbers, displacement, (forces.of)(&pair));
                         }
                     }
                 }

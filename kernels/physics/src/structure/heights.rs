@@ -97,19 +97,21 @@ impl Heights {
 }
 
 /// Probability that discs of two radii, each anywhere along a side, are closer along it than some length.
-fn probability_along(side: BoxSide, radii: [f64; 2], way: f64) -> f64 {
+fn probability_along(side: BoxSide, radii: [f64; 2], separation: f64) -> f64 {
     let room = match side {
         BoxSide::Closed(length) => radii.map(|radius| (length - 2.0 * radius).max(0.0)),
-        _ => return (2.0 * way / side.length()).min(1.0),
+        _ => return (2.0 * separation / side.length()).min(1.0),
     };
     let [narrow, wide] = [room[0].min(room[1]), room[0].max(room[1])];
     // The narrow range is within reach of the wide one up to here.
     let [inner, outer] = [0.5 * (wide - narrow), 0.5 * (wide + narrow)];
     match () {
-        () if way >= outer => 1.0,
-        () if way <= inner => 2.0 * way / wide,
+        () if separation >= outer => 1.0,
+        () if separation <= inner => 2.0 * separation / wide,
         () => {
-            (2.0 * inner * narrow + 2.0 * outer * (way - inner) - way * way + inner * inner) / (narrow * wide)
+            (2.0 * inner * narrow + 2.0 * outer * (separation - inner) - separation * separation
+                + inner * inner)
+                / (narrow * wide)
         }
     }
 }
@@ -130,7 +132,7 @@ mod tests {
     /// Hand calculation: density of the difference of two uniform positions.
     #[test]
     fn probabilities_match_two_uniform_positions() {
-        for (side, radii, way, chance) in [
+        for (side, radii, separation, chance) in [
             (BoxSide::Periodic(10.0), [0.5, 1.0], 2.0, 0.4),
             // Ranges of 9 and 9: 1 − (1 − 3/9)².
             (BoxSide::Closed(10.0), [0.5; 2], 3.0, 5.0 / 9.0),
@@ -140,8 +142,11 @@ mod tests {
             (BoxSide::Closed(10.0), [3.0, 1.0], 6.0, 1.0),
             (BoxSide::Closed(2.0), [1.0; 2], 0.0, 1.0),
         ] {
-            let found = probability_along(side, radii, way);
-            assert!((found - chance).abs() < 1e-12, "{side:?} {radii:?} {way}: {found} in place of {chance}");
+            let found = probability_along(side, radii, separation);
+            assert!(
+                (found - chance).abs() < 1e-12,
+                "{side:?} {radii:?} {separation}: {found} in place of {chance}"
+            );
         }
     }
 }

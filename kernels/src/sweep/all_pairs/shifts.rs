@@ -76,7 +76,7 @@ struct ShiftEnv<M: Machine> {
 
 impl<M: Machine> Env<3> for &ShiftEnv<M> {
     type V = M::V;
-    type Place = isize;
+    type Partner = isize;
     const BOTH_PARTNERS: bool = false;
 
     #[inline(always)]

@@ -81,7 +81,7 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> TileEnv<'_, R, SUMS, BOT
 
 impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &TileEnv<'_, R, SUMS, BOTH> {
     type V = R::V;
-    type Place = PartnerBodies<R::V>;
+    type Partner = PartnerBodies<R::V>;
     const BOTH_PARTNERS: bool = BOTH;
 
     #[inline(always)]
@@ -93,15 +93,15 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &TileEnv<'_, 
         self.field(&self.own, field)
     }
     #[inline(always)]
-    fn displacement(self, own: [R::V; 3], place: PartnerBodies<R::V>) -> [R::V; 3] {
+    fn displacement(self, own: [R::V; 3], there: PartnerBodies<R::V>) -> [R::V; 3] {
         from_fn(|axis| {
-            let far = own[axis] - place.position[axis];
-            if const { is_split::<R::Lane>() } { far + (self.own.rest[axis] - place.rest[axis]) } else { far }
+            let far = own[axis] - there.position[axis];
+            if const { is_split::<R::Lane>() } { far + (self.own.rest[axis] - there.rest[axis]) } else { far }
         })
     }
     #[inline(always)]
-    fn partner(self, field: ParticleField, place: PartnerBodies<R::V>) -> R::V {
-        self.field(&place, field)
+    fn partner(self, field: ParticleField, there: PartnerBodies<R::V>) -> R::V {
+        self.field(&there, field)
     }
     #[inline(always)]
     fn uniform(self, value: f64) -> R::V {

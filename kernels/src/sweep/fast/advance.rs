@@ -58,7 +58,7 @@ pub enum DisplacementLimit<'a, S> {
     /// A distance from a reference position.
     From {
         /// Reference positions, at least one entry per disc.
-        places: [&'a [S]; 2],
+        positions: [&'a [S]; 2],
         /// Largest distance (length).
         distance: f64,
     },
@@ -86,13 +86,13 @@ impl PassReport {
 
 /// Single-precision copies of the positions for a search, written together with the state while it is in registers.
 ///
-/// Only the lattice creates them. Every cell is an index into `places` and belongs to one disc or to none.
+/// Only the lattice creates them. Every cell is an index into `positions` and belongs to one disc or to none.
 #[derive(Debug)]
 pub struct PositionCopies<'a> {
     /// Index of each disc's copy.
     pub(super) cells: &'a [u32],
     /// The copies.
-    pub(super) places: [&'a mut [f32]; 2],
+    pub(super) positions: [&'a mut [f32]; 2],
     /// Factor from lengths to the unit of the copies.
     pub(super) unit: f64,
 }
@@ -203,9 +203,9 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
         assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= end));
-        if let DisplacementLimit::From { places, .. } = limit {
+        if let DisplacementLimit::From { positions, .. } = limit {
             assert!(
-                places.iter().all(|place| place.len() >= end),
+                positions.iter().all(|position| position.len() >= end),
                 "a column of reference positions has no entry for some moving disc"
             );
         }
@@ -221,9 +221,9 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         }
         let copies_places = copies.is_some();
         let mut none = [[]; 2];
-        let PositionCopies { cells, places, unit } = copies.unwrap_or_else(|| {
+        let PositionCopies { cells, positions, unit } = copies.unwrap_or_else(|| {
             let [x, y] = &mut none;
-            PositionCopies { cells: &[], places: [x, y], unit: 1.0 }
+            PositionCopies { cells: &[], positions: [x, y], unit: 1.0 }
         });
         assert!(!copies_places || cells.len() >= end, "cells has no entry for some moving disc");
         let arrays = PassPointers {
@@ -235,7 +235,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             limit,
             cells: cells.as_ptr(),
             copies_places,
-            places: places.map(<[f32]>::as_mut_ptr),
+            positions: positions.map(<[f32]>::as_mut_ptr),
         };
         // Velocity in the units of the state at which a step has the greatest length allowed.
         let fastest = longest_step * (C::scales(motion.dt)[1] / motion.dt);
@@ -274,7 +274,7 @@ struct PassPointers<'a, S, P> {
     cells: *const u32,
     /// True if positions are copied to the lattice.
     copies_places: bool,
-    places: [*mut f32; 2],
+    positions: [*mut f32; 2],
 }
 
 // SAFETY: passes over disjoint ranges touch different discs, and these have different cells. Discs in shared cells have a common
@@ -333,7 +333,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
     fn advance_register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
-        let (mut place, mut velocity) = ([uniform(0.0); 2], [uniform(0.0); 2]);
+        let (mut position, mut velocity) = ([uniform(0.0); 2], [uniform(0.0); 2]);
         let nothing = uniform(f64::NAN);
         let normals = match C::DRAWS {
             Draws::Never => [nothing; 2],
@@ -351,8 +351,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 // SAFETY: where discs vary, Advance has checked that these columns have an entry for every moving disc.
                 unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
             });
-            let context = |place: Draws| {
-                let normal = if C::DRAWS == place { normals[freedom.min(1)] } else { nothing };
+            let context = |position: Draws| {
+                let normal = if C::DRAWS == position { normals[freedom.min(1)] } else { nothing };
                 motion.context(registers, inverse, normal)
             };
             let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
@@ -372,20 +372,20 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 unsafe { registers.store(arrays.columns[freedom][k].add(first), row[k]) };
             }
             if freedom < 2 {
-                place[freedom] = row[0];
+                position[freedom] = row[0];
                 velocity[freedom] = row[1];
             }
         }
         let stays = match arrays.limit {
             DisplacementLimit::Cell([x, y]) => {
                 let (x, y) = (uniform(0.5 * x), uniform(0.5 * y));
-                place[0].abs().less_equal(x).and(place[1].abs().less_equal(y))
+                position[0].abs().less_equal(x).and(position[1].abs().less_equal(y))
             }
-            DisplacementLimit::From { places: [x, y], distance } => {
+            DisplacementLimit::From { positions: [x, y], distance } => {
                 // SAFETY: Advance has checked that every moving disc has a reference position.
                 let (x, y) =
                     unsafe { (registers.load(x.as_ptr().add(first)), registers.load(y.as_ptr().add(first))) };
-                let (dx, dy) = (place[0] - x, place[1] - y);
+                let (dx, dy) = (position[0] - x, position[1] - y);
                 (dx * dx + dy * dy).less_equal(uniform(distance * distance))
             }
         };
@@ -402,7 +402,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         for axis in 0..2 {
             let mut along = [S::default(); 16];
             // SAFETY: `along` has 16 entries, and no register has more lanes.
-            unsafe { registers.store(along.as_mut_ptr(), place[axis] * unit) };
+            unsafe { registers.store(along.as_mut_ptr(), position[axis] * unit) };
             // Converts all lanes first, so that the compiler vectorises the conversion.
             let mut narrow = [0.0_f32; 16];
             for lane in 0..16 {
@@ -413,8 +413,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 // which discs in shared cells have in common: only these stores touch it. They are atomic and compile to plain
                 // ones.
                 unsafe {
-                    let place = arrays.places[axis].add(*arrays.cells.add(first + lane) as usize);
-                    AtomicU32::from_ptr(place.cast()).store(narrow[lane].to_bits(), Ordering::Relaxed);
+                    let position = arrays.positions[axis].add(*arrays.cells.add(first + lane) as usize);
+                    AtomicU32::from_ptr(position.cast()).store(narrow[lane].to_bits(), Ordering::Relaxed);
                 }
             }
         }

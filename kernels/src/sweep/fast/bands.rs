@@ -195,7 +195,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             for rows in &rows[stage] {
                 let mut cursor = SearchCursor::at(rows.start);
                 while cursor.row < rows.end {
-                    finder.find(discs.place, rows.clone(), &mut cursor, found, set)?;
+                    finder.find(discs.position, rows.clone(), &mut cursor, found, set)?;
                     let pairs = finder.pairs(found);
                     *met += pairs.count() as u64;
                     dispatch_native(
@@ -216,7 +216,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                         let length = all.len().div_ceil(PARTS * threads).max(1);
                         let cut = pieces(all, length).zip(&mut self.parts);
                         let searched = on_threads(cut, |(part, found)| {
-                            finder.find_part(discs.place, part, found);
+                            finder.find_part(discs.position, part, found);
                             found
                         });
                         for found in searched {

@@ -32,7 +32,7 @@ use std::mem::MaybeUninit;
 #[derive(Clone, Copy, Debug)]
 pub struct DiscColumns<'a, S> {
     /// Positions relative to the centres of the cells (length).
-    pub place: [&'a [S]; 2],
+    pub position: [&'a [S]; 2],
     /// Velocities, in any unit of time.
     pub velocity: [&'a [S]; 2],
     /// Angular velocities, in the same unit.
@@ -60,7 +60,7 @@ impl<'a, S: Element> DiscColumns<'a, S> {
     /// True if every column that a law reads has an entry for every disc and sentinel.
     #[inline]
     pub(super) fn has_all_entries(&self, fields: &[ParticleField], discs: usize) -> bool {
-        let columns = fields.iter().map(|&field| self.column(field)).chain(self.place);
+        let columns = fields.iter().map(|&field| self.column(field)).chain(self.position);
         columns.into_iter().all(|column| column.len() == discs + SENTINELS)
     }
 }
@@ -179,12 +179,12 @@ fn spill<R: Registers>(registers: R, value: R::V) -> LaneArray<R::Lane> {
 
 impl<R: Registers, S: Element> Env<2> for &GatherEnv<'_, R, S> {
     type V = R::V;
-    type Place = ();
+    type Partner = ();
     const BOTH_PARTNERS: bool = true;
 
     #[inline(always)]
     fn own_position(self) -> [R::V; 2] {
-        [self.gather(self.discs.place[0], self.own), self.gather(self.discs.place[1], self.own)]
+        [self.gather(self.discs.position[0], self.own), self.gather(self.discs.position[1], self.own)]
     }
     #[inline(always)]
     fn own(self, field: ParticleField) -> R::V {
@@ -192,8 +192,8 @@ impl<R: Registers, S: Element> Env<2> for &GatherEnv<'_, R, S> {
     }
     #[inline(always)]
     fn displacement(self, own: [R::V; 2], (): ()) -> [R::V; 2] {
-        let x = (own[0] - self.gather(self.discs.place[0], self.partner)) - self.cell_offset[0];
-        let y = (own[1] - self.gather(self.discs.place[1], self.partner)) - self.cell_offset[1];
+        let x = (own[0] - self.gather(self.discs.position[0], self.partner)) - self.cell_offset[0];
+        let y = (own[1] - self.gather(self.discs.position[1], self.partner)) - self.cell_offset[1];
         [x, y]
     }
     #[inline(always)]

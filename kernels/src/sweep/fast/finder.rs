@@ -90,7 +90,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     /// [`ProgramError::NoSuchInstructionSet`].
     fn find(
         &self,
-        places: [&[S]; 2],
+        positions: [&[S]; 2],
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut Self::Found,

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// Lists those of the given pairs that are nearer than a limit.
 pub(super) struct DistanceFilter<'a, S, P> {
-    places: [&'a [S]; 2],
+    positions: [&'a [S]; 2],
     cell_offsets: [[f64; 2]; 5],
     limit: f64,
     touches: &'a mut Vec<CandidatePair<P>>,
@@ -22,19 +22,19 @@ impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     /// If there is not a position for every disc and sentinel.
     #[inline]
     pub(super) fn new(
-        places: [&'a [S]; 2],
+        positions: [&'a [S]; 2],
         discs: usize,
         grid: &CellGrid,
         reach: f64,
         touches: &'a mut PairBuffer<P>,
     ) -> Self {
         assert!(
-            places.iter().all(|place| place.len() == discs + SENTINELS),
+            positions.iter().all(|position| position.len() == discs + SENTINELS),
             "a column of positions does not have an entry for each of {discs} discs and {SENTINELS} sentinels"
         );
         touches.0.clear();
         let limit = reach * reach * MARGIN;
-        DistanceFilter { places, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
+        DistanceFilter { positions, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
     }
 
     /// Searches rows piece by piece (`pieces` of a row) until enough pairs are listed.
@@ -66,7 +66,7 @@ impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     #[inline(always)]
     pub(super) unsafe fn disc_position(&self, disc: u32) -> [f64; 2] {
         // SAFETY: every disc has a position, as `new` has checked.
-        self.places.map(|place| unsafe { place.get_unchecked(disc as usize) }.to_f64())
+        self.positions.map(|position| unsafe { position.get_unchecked(disc as usize) }.to_f64())
     }
 
     /// Lists a pair if it is near enough.

@@ -146,12 +146,12 @@ impl Sectors {
         }
         members.resize(end as usize, 0);
         // From the ends down, so that the ends become the starts.
-        let (ends, places) = (shared(starts), shared(members));
+        let (ends, positions) = (shared(starts), shared(members));
         over_pieces(0..sector.len(), |discs| {
             inside(discs).for_each(|(disc, sector)| {
                 // Adding 2³² − 1 subtracts one.
-                let place = add(&ends[sector], u32::MAX) - 1;
-                places[place as usize].store(disc as u32, Ordering::Relaxed);
+                let position = add(&ends[sector], u32::MAX) - 1;
+                positions[position as usize].store(disc as u32, Ordering::Relaxed);
             });
         });
         let (starts, mut rest) = (&*starts, members.as_mut_slice());
@@ -308,13 +308,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
 
     fn find(
         &self,
-        places: [&[S]; 2],
+        positions: [&[S]; 2],
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = DistanceFilter::new(places, self.sector.len(), &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(positions, self.sector.len(), &self.grid, self.reach, found);
         near.search(
             rows,
             cursor,
@@ -346,8 +346,8 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         self.members_of_rows(rows)
     }
 
-    fn find_part(&self, places: [&[S]; 2], part: Range<usize>, found: &mut PairBuffer<P>) {
-        let mut near = DistanceFilter::new(places, self.sector.len(), &self.grid, self.reach, found);
+    fn find_part(&self, positions: [&[S]; 2], part: Range<usize>, found: &mut PairBuffer<P>) {
+        let mut near = DistanceFilter::new(positions, self.sector.len(), &self.grid, self.reach, found);
         let (mut last, mut at) = (NOWHERE, [0.0; 2]);
         self.pairs_of_members(part, |first, second, cell_offset| {
             // SAFETY: `pairs_of_members` gives members of sectors, which are discs, and numbers of cell offsets below 5.

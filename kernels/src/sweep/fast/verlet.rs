@@ -60,7 +60,7 @@ impl VerletList {
     ///
     /// # Panics
     /// If the sectors are too narrow for that, or there are not as many positions as discs and sentinels.
-    pub fn new<S: Element>(sectors: &Sectors, places: [&[S]; 2], skin: f64) -> Self {
+    pub fn new<S: Element>(sectors: &Sectors, positions: [&[S]; 2], skin: f64) -> Self {
         let (grid, reach) = (*sectors.grid(), sectors.reach());
         let limit = (reach + skin) * (reach + skin);
         assert!(
@@ -72,7 +72,7 @@ impl VerletList {
             "sectors too narrow for the reach and the skin"
         );
         let discs = sectors.disc_count();
-        let at = |disc: u32| places.map(|place| place[disc as usize].to_f64());
+        let at = |disc: u32| positions.map(|position| position[disc as usize].to_f64());
         let cell_offsets = grid.cell_offsets();
         let part = |rows: Range<usize>| {
             let mut part = RowLists::default();
@@ -146,13 +146,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
 
     fn find(
         &self,
-        places: [&[S]; 2],
+        positions: [&[S]; 2],
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = DistanceFilter::new(places, self.discs, &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(positions, self.discs, &self.grid, self.reach, found);
         let pairs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
         near.search(
             rows,

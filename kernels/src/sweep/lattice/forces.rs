@@ -14,7 +14,7 @@ struct MaskNeighbour {
     /// Distance in elements from the own cell.
     shift: isize,
     /// Vector from the own cell's centre to this one's (length); 0 for absolute positions.
-    way: [f64; 2],
+    displacement: [f64; 2],
 }
 
 /// Evaluates `law` at the offsets of a mask for every cell of the lattice. Vector length: [`LatticeShape::swept`].
@@ -24,7 +24,7 @@ struct MaskNeighbour {
 #[derive(Clone, Debug)]
 pub struct Forces<P, L> {
     law: L,
-    places: Vec<MaskNeighbour>,
+    neighbours: Vec<MaskNeighbour>,
     relative: bool,
     asked: ObservationRequest,
     precision: PhantomData<P>,
@@ -45,13 +45,13 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
         coordinates: Coordinates,
     ) -> Self {
         let relative = coordinates == Coordinates::CellRelative;
-        let places = mask.offsets().iter().map(|&offset| MaskNeighbour {
+        let neighbours = mask.offsets().iter().map(|&offset| MaskNeighbour {
             shift: shape.shift(offset),
-            way: [f64::from(offset.columns) * frame.edge[0], f64::from(offset.rows) * frame.edge[1]],
+            displacement: [f64::from(offset.columns) * frame.edge[0], f64::from(offset.rows) * frame.edge[1]],
         });
         Forces {
             law,
-            places: places.collect(),
+            neighbours: neighbours.collect(),
             relative,
             asked: ObservationRequest::default(),
             precision: PhantomData,
@@ -98,7 +98,7 @@ struct LatticeEnv<M: Machine> {
 
 impl<M: Machine> Env<2> for &LatticeEnv<M> {
     type V = M::V;
-    type Place = MaskNeighbour;
+    type Partner = MaskNeighbour;
     const BOTH_PARTNERS: bool = false;
 
     #[inline(always)]
@@ -113,20 +113,20 @@ impl<M: Machine> Env<2> for &LatticeEnv<M> {
     }
 
     #[inline(always)]
-    fn displacement(self, own: [M::V; 2], place: MaskNeighbour) -> [M::V; 2] {
+    fn displacement(self, own: [M::V; 2], neighbour: MaskNeighbour) -> [M::V; 2] {
         let m = self.machine;
-        let mut x = own[0] - m.load_shifted(Slot::<M::Lane>::new(Array::X), place.shift);
-        let mut y = own[1] - m.load_shifted(Slot::<M::Lane>::new(Array::Y), place.shift);
+        let mut x = own[0] - m.load_shifted(Slot::<M::Lane>::new(Array::X), neighbour.shift);
+        let mut y = own[1] - m.load_shifted(Slot::<M::Lane>::new(Array::Y), neighbour.shift);
         if self.relative {
-            x = x - m.uniform(place.way[0]);
-            y = y - m.uniform(place.way[1]);
+            x = x - m.uniform(neighbour.displacement[0]);
+            y = y - m.uniform(neighbour.displacement[1]);
         }
         [x, y]
     }
 
     #[inline(always)]
-    fn partner(self, field: ParticleField, place: MaskNeighbour) -> M::V {
-        self.machine.load_shifted(Slot::<M::Lane>::new(lattice_vector(field)), place.shift)
+    fn partner(self, field: ParticleField, neighbour: MaskNeighbour) -> M::V {
+        self.machine.load_shifted(Slot::<M::Lane>::new(lattice_vector(field)), neighbour.shift)
     }
 
     #[inline(always)]
@@ -212,8 +212,8 @@ unsafe impl<P: Element, L: Law<2>> Kernel for Forces<P, L> {
         };
         let env = StatedEnv::new(&around, &self.law);
         let own = self.law.own(env);
-        for &place in &self.places {
-            self.law.pair(env, place, &own);
+        for &neighbour in &self.neighbours {
+            self.law.pair(env, neighbour, &own);
         }
         m.section("sums");
         for &sum in L::SUMS {

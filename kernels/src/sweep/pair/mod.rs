@@ -190,7 +190,7 @@ impl PairEnv<'_> {
 
 impl Env<2> for &PairEnv<'_> {
     type V = f64;
-    type Place = ();
+    type Partner = ();
     const BOTH_PARTNERS: bool = true;
 
     #[inline]

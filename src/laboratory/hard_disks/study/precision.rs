@@ -38,8 +38,8 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
         runs.flat_map(|(discs, engine)| (1..=SEEDS).map(move |seed| (discs, engine, seed))).collect();
     let half = |share: f64| (lab.progress)(0.5 * share);
     let errors = ProgressMeter::new(runs.len() as f64, &half).run_cases_from_last(&runs, pressure_errors)?;
-    let of_ways = runs.chunks(SEEDS as usize).zip(errors.chunks(SEEDS as usize));
-    let ways: Vec<EngineErrors> = of_ways
+    let of_engines = runs.chunks(SEEDS as usize).zip(errors.chunks(SEEDS as usize));
+    let engines: Vec<EngineErrors> = of_engines
         .map(|(runs, errors)| EngineErrors {
             engine: runs[0].1,
             asked: runs[0].0,
@@ -47,27 +47,30 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
             errors: errors.iter().map(|it| it.1.clone()).collect(),
         })
         .collect();
-    let case = |way: &EngineErrors| {
-        let scene = fluid_overrides(way.engine, way.asked, PACKING);
-        let case = RateCase::events("hard-disks", &scene, FORGOTTEN * way.asked, LOOKS[4]);
-        case.label("engine", way.engine).label("discs", way.asked)
+    let case = |results: &EngineErrors| {
+        let scene = fluid_overrides(results.engine, results.asked, PACKING);
+        let case = RateCase::events("hard-disks", &scene, FORGOTTEN * results.asked, LOOKS[4]);
+        case.label("engine", results.engine).label("discs", results.asked)
     };
     let half = |share: f64| (lab.progress)(0.5 + 0.5 * share);
     let lab = StudyEnvironment { progress: &half, program: lab.program.clone() };
-    let rates = measure_rates(&lab, &ways.iter().map(case).collect::<Vec<_>>())?;
-    let looks = ways.iter().zip(&rates).flat_map(|it| (0..LOOKS.len()).map(move |look| (it, look)));
-    let of_seeds =
-        |way: &EngineErrors, look: usize| way.errors.iter().map(|it| 100.0 * it[look]).collect::<Vec<f64>>();
+    let rates = measure_rates(&lab, &engines.iter().map(case).collect::<Vec<_>>())?;
+    let looks = engines.iter().zip(&rates).flat_map(|it| (0..LOOKS.len()).map(move |look| (it, look)));
+    let of_seeds = |results: &EngineErrors, look: usize| {
+        results.errors.iter().map(|it| 100.0 * it[look]).collect::<Vec<f64>>()
+    };
     let square =
         |values: Vec<f64>| (values.iter().map(|it| it * it).sum::<f64>() / values.len() as f64).sqrt();
     Ok(FinishedItem::of([FrameBuilder::of(looks)
-        .text("engine and discs", |((way, _), _)| format!("{}, N = {}", way.engine, way.discs))
+        .text("engine and discs", |((results, _), _)| format!("{}, N = {}", results.engine, results.discs))
         .count("collisions", |(_, look)| LOOKS[*look])
         .cell("processor time (s)", |((_, rate), look)| rate.cost().cell(LOOKS[*look] as f64, 3))
         .cell("million collisions/s", |((_, rate), _)| rate.rate().cell(1e-6, 3))
-        .number("error of Z (%)", 3, |((way, _), look)| square(of_seeds(way, *look)))
-        .number("mean error (%)", 3, |((way, _), look)| RunSpread::of(&of_seeds(way, *look)).mean)
-        .number("its standard error (%)", 3, |((way, _), look)| RunSpread::of(&of_seeds(way, *look)).error)
+        .number("error of Z (%)", 3, |((results, _), look)| square(of_seeds(results, *look)))
+        .number("mean error (%)", 3, |((results, _), look)| RunSpread::of(&of_seeds(results, *look)).mean)
+        .number("its standard error (%)", 3, |((results, _), look)| {
+            RunSpread::of(&of_seeds(results, *look)).error
+        })
         .frame("precision", "Errors of Z after growing numbers of collisions")])
     .with_seeds(1..=SEEDS))
 }

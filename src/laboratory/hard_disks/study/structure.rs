@@ -193,14 +193,15 @@ fn bond_orders(domain: Domain, places: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let mut around: Vec<[f64; 2]> = near
             .candidates_near(*own)
             .map(|(_, other)| domain.displacement(*own, other))
-            .filter(|way| *way != [0.0; 2])
+            .filter(|displacement| *displacement != [0.0; 2])
             .collect();
-        let square = |way: &[f64; 2]| way[0] * way[0] + way[1] * way[1];
+        let square =
+            |displacement: &[f64; 2]| displacement[0] * displacement[0] + displacement[1] * displacement[1];
         around.sort_by(|a, b| square(a).total_cmp(&square(b)));
         around.truncate(6);
         let share = 1.0 / (around.len().max(1) as f64);
-        around.iter().fold([0.0; 2], |sum, way| {
-            let angle = 6.0 * way[1].atan2(way[0]);
+        around.iter().fold([0.0; 2], |sum, displacement| {
+            let angle = 6.0 * displacement[1].atan2(displacement[0]);
             [sum[0] + share * angle.cos(), sum[1] + share * angle.sin()]
         })
     };

@@ -210,8 +210,8 @@ fn squared_force_and_curvature(particles: &Particles, domain: &Domain) -> [f64; 
     let mut curvature = 0.0;
     for (first, &from) in places.iter().enumerate() {
         for (second, &to) in places.iter().enumerate().skip(first + 1) {
-            let way = domain.displacement(from, to);
-            let square = way[0] * way[0] + way[1] * way[1];
+            let displacement = domain.displacement(from, to);
+            let square = displacement[0] * displacement[0] + displacement[1] * displacement[1];
             if square >= REACH * REACH {
                 continue;
             }
@@ -220,8 +220,8 @@ fn squared_force_and_curvature(particles: &Particles, domain: &Domain) -> [f64; 
             // U″ + U′/r in the plane, for both particles.
             curvature += 2.0 * 144.0 * sixth * (4.0 * sixth - 1.0) / square;
             for axis in 0..2 {
-                forces[first][axis] -= repulsion * way[axis];
-                forces[second][axis] += repulsion * way[axis];
+                forces[first][axis] -= repulsion * displacement[axis];
+                forces[second][axis] += repulsion * displacement[axis];
             }
         }
     }

@@ -10,7 +10,7 @@ use stripmine_kernels::mask::{Mask, Offset};
 /// Draws figure 2 and lists its offsets in order and the reach of both masks.
 pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (mask, wider) = (Mask::square(2), Mask::square(3));
-    let places = mask.offsets();
+    let offsets = mask.offsets();
     // A mask of half-width h covers every contact on cells of 2R_max/h; cells of d_min/√2 hold one disc.
     let ratio = |half: f64, penetration: f64| half * (1.0 - penetration) / SQRT_2;
     Ok(FinishedItem::of([
@@ -20,20 +20,20 @@ pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<Finish
             .number("largest R_max/R_min, discs just touching", 3, |(_, half)| ratio(*half, 0.0))
             .number("largest R_max/R_min, penetration up to 0.1", 3, |(_, half)| ratio(*half, 0.1))
             .frame("reach", "Sizes of discs that a mask serves"),
-        FrameBuilder::of(places.iter().zip(1_u64..))
+        FrameBuilder::of(offsets.iter().zip(1_u64..))
             .count("number", |(_, number)| *number)
-            .number("column", 0, |(place, _)| f64::from(place.columns))
-            .number("row", 0, |(place, _)| f64::from(place.rows))
-            .number("offset", 0, |(place, _)| f64::from(place.columns + 5 * place.rows))
+            .number("column", 0, |(offset, _)| f64::from(offset.columns))
+            .number("row", 0, |(offset, _)| f64::from(offset.rows))
+            .number("offset", 0, |(offset, _)| f64::from(offset.columns + 5 * offset.rows))
             .frame("places", "Places of the mask in the order of visit"),
         FrameBuilder::of([()])
             .count("places of the wider mask", |()| wider.offsets().len())
             .frame("summary", "Masks"),
     ])
-    .with_picture("mask_5x5", Picture::Drawing(drawing(places))))
+    .with_picture("mask_5x5", Picture::Drawing(drawing(offsets))))
 }
 
-fn drawing(places: &[Offset]) -> Drawing {
+fn drawing(offsets: &[Offset]) -> Drawing {
     let cell = |columns: i32, rows: i32, words: String, tint| {
         let [x, y] = [columns, rows].map(f64::from);
         // In the corner farthest from the middle, so that the circle does not cross the number.
@@ -45,8 +45,8 @@ fn drawing(places: &[Offset]) -> Drawing {
         ]
     };
     let mut shapes = Vec::from(cell(0, 0, "0".into(), Tint::Still));
-    for (place, number) in places.iter().zip(1_usize..) {
-        shapes.extend(cell(place.columns, place.rows, number.to_string(), Tint::Clear));
+    for (offset, number) in offsets.iter().zip(1_usize..) {
+        shapes.extend(cell(offset.columns, offset.rows, number.to_string(), Tint::Clear));
     }
     // Largest disc that these cells allow, in the middle of its cell.
     shapes.push(DrawnShape::Disc { centre: [0.0, 0.0], radius: 1.0, tint: Tint::Clear });

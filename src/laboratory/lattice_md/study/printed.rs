@@ -36,7 +36,7 @@ const SHORT: [usize; 9] = [25, 49, 100, 170, 290, 500, 1000, CELLS, 100_000];
 const LONG: [usize; 5] = [2000, 5000, 30_000, 300_000, 1_000_000];
 
 /// Configurations from 1993 to today, each with one more change: name, program, execution, and true for cells of the paper's size.
-const WAYS: [(&str, ProgramVersion, &str, bool); 6] = [
+const CONFIGURATIONS: [(&str, ProgramVersion, &str, bool); 6] = [
     ("printed, eager", ProgramVersion::Printed, "eager", true),
     ("printed, strips of 256", ProgramVersion::Printed, "strip:256", true),
     ("printed, chained", ProgramVersion::Printed, "chained", true),
@@ -116,7 +116,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     });
     let scene =
         Overrides::new().set(&COUNT, discs).set(&PACKING_FRACTION, SCENE * PI).set(&COHESIONLESS, false);
-    let ways = WAYS.map(|(name, text, execution, is_narrow)| {
+    let configurations = CONFIGURATIONS.map(|(name, text, execution, is_narrow)| {
         let is_fast = execution == FAST;
         let set = match is_fast {
             true => scene.clone().set(&ENGINE, EngineChoice::Fast).set(&SEARCH, SearchKind::Lattice),
@@ -128,8 +128,8 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         let steps = (200_000 / discs).clamp(4, 200) as u64;
         RateCase::steps("bench", &set, warm_up, steps).for_seconds(0.1).label("way", name)
     });
-    let measured = measure_rates(lab, &parts.chain(ways).collect::<Vec<_>>())?;
-    let (eager, ways) = measured.split_at(places.len());
+    let measured = measure_rates(lab, &parts.chain(configurations).collect::<Vec<_>>())?;
+    let (eager, configurations) = measured.split_at(places.len());
     let all = places.iter().zip(eager).filter(|((.., ours), _)| !ours);
     let timed: Vec<TimedPart> = all
         .flat_map(|(&(cells, occupancy, _), it)| {
@@ -137,7 +137,12 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         })
         .collect();
     let fitted = SOURCES_PARTS.map(|part| fit_clock_line(part.name(), &timed));
-    let frames = [vector_frame(&timed, &fitted), fits(&fitted), densities(&timed), configuration_costs(ways)];
+    let frames = [
+        vector_frame(&timed, &fitted),
+        fits(&fitted),
+        densities(&timed),
+        configuration_costs(configurations),
+    ];
     let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, false));
     let summary = FrameBuilder::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
         .cell("printed text, eager (µs)", |[printed, _]| printed.cost().cell(1e6, 0))
@@ -316,10 +321,10 @@ fn densities(timed: &[TimedPart]) -> ResultFrame {
         .frame("densities", format!("The eager step over the occupancy, on {CELLS} cells"))
 }
 
-fn configuration_costs(ways: &[MeasuredCase]) -> ResultFrame {
-    let first = &ways[0];
-    let before = std::iter::once(first).chain(ways);
-    FrameBuilder::of(WAYS.iter().zip(ways).zip(before).enumerate())
+fn configuration_costs(configurations: &[MeasuredCase]) -> ResultFrame {
+    let first = &configurations[0];
+    let before = std::iter::once(first).chain(configurations);
+    FrameBuilder::of(CONFIGURATIONS.iter().zip(configurations).zip(before).enumerate())
         .count("step", |(at, _)| at + 1)
         .text("way", |(_, (((name, ..), _), _))| *name)
         .cell("ns a disc and step", |(_, ((_, own), _))| own.cost().cell(1e9, 1))

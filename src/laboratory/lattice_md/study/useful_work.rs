@@ -38,14 +38,14 @@ fn shares(figures: ListStatistics) -> Result<[f64; 4], StudyError> {
     let lattice = ledger(&programs);
     // Operations of an offset of the mask, without those of a cell. The law adds to its sums in a section with the name of the section that
     // stores them.
-    let places = 24.0;
-    let of_places: u64 = lattice
+    let offsets = 24.0;
+    let of_offsets: u64 = lattice
         .entries()
         .iter()
         .filter(|entry| entry.part == Part::Forces.name() && !["own disc", "watch"].contains(&entry.section))
         .map(|entry| entry.counts.filtered(|op| op.class() != OpClass::Store).total())
         .sum();
-    let useful = contacts * of_places as f64 / places;
+    let useful = contacts * of_offsets as f64 / offsets;
     let sum = |ledger: &Ledger, forces_only: bool| -> f64 {
         let parts = ledger.parts().into_iter();
         let parts = parts.filter(|(part, ..)| !forces_only || *part == Part::Forces.name());

@@ -21,7 +21,7 @@ use stripmine_physics::scene::{DT, Overrides, PRECISION, Precision};
 use stripmine_physics::words::Words;
 
 /// Combinations of force precision and root arithmetic.
-const WAYS: [(Precision, ArithmeticKind); 5] = [
+const CONFIGURATIONS: [(Precision, ArithmeticKind); 5] = [
     (Precision::Mixed, ArithmeticKind::Raw),
     (Precision::Mixed, ArithmeticKind::Estimated),
     (Precision::Mixed, ArithmeticKind::Exact),
@@ -44,27 +44,35 @@ pub(in crate::laboratory::nbody) static WORKS: [StudyWork; 1] =
 pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (counts, seconds): (&[usize], f64) =
         if size == StudySize::Quick { (&[1024], 0.05) } else { (&[1024, 4096, 16_384], 0.1) };
-    let all: Vec<(usize, usize)> =
-        counts.iter().flat_map(|&count| (0..WAYS.len()).map(move |way| (count, way))).collect();
-    let case = |&(count, way): &(usize, usize), threads: usize| {
-        let (precision, arithmetic) = WAYS[way];
-        let case = RateCase::own(&WORKS[0], serde_json::json!([count, way, seconds])).on_threads(threads);
+    let all: Vec<(usize, usize)> = counts
+        .iter()
+        .flat_map(|&count| (0..CONFIGURATIONS.len()).map(move |configuration| (count, configuration)))
+        .collect();
+    let case = |&(count, configuration): &(usize, usize), threads: usize| {
+        let (precision, arithmetic) = CONFIGURATIONS[configuration];
+        let case =
+            RateCase::own(&WORKS[0], serde_json::json!([count, configuration, seconds])).on_threads(threads);
         case.label("bodies", count as u64)
             .label("forces", precision.word())
             .label("arithmetic", arithmetic.word())
     };
     let cases: Vec<RateCase> = all.iter().flat_map(|it| THREADS.map(|threads| case(it, threads))).collect();
     let measured = measure_rates(lab, &cases)?;
-    let errors =
-        all.iter().map(|&(count, way)| errors_of_forces(count, way)).collect::<Result<Vec<_>, _>>()?;
-    let rows =
-        all.iter().zip(measured.chunks(2)).zip(&errors).map(|((&(count, way), threads), (error, _))| {
-            (count, WAYS[way], &threads[0], &threads[1], error)
-        });
+    let errors = all
+        .iter()
+        .map(|&(count, configuration)| errors_of_forces(count, configuration))
+        .collect::<Result<Vec<_>, _>>()?;
+    let rows = all.iter().zip(measured.chunks(2)).zip(&errors).map(
+        |((&(count, configuration), threads), (error, _))| {
+            (count, CONFIGURATIONS[configuration], &threads[0], &threads[1], error)
+        },
+    );
     let same = errors.iter().all(|(_, same)| *same);
-    let ways = [WAYS[4], WAYS[2], WAYS[1], WAYS[0]];
-    let conserving = ways.into_iter().flat_map(|way| [128, 512].map(|steps| (way, steps)));
-    let conserving = conserving.map(|(way, steps)| Ok((way, steps, energy_error(way, steps)?)));
+    let configurations = [CONFIGURATIONS[4], CONFIGURATIONS[2], CONFIGURATIONS[1], CONFIGURATIONS[0]];
+    let conserving =
+        configurations.into_iter().flat_map(|configuration| [128, 512].map(|steps| (configuration, steps)));
+    let conserving = conserving
+        .map(|(configuration, steps)| Ok((configuration, steps, energy_error(configuration, steps)?)));
     let conserving = conserving.collect::<Result<Vec<_>, StudyError>>()?;
     Ok(FinishedItem::of([
         FrameBuilder::of(rows)
@@ -98,8 +106,8 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
 }
 
 /// Scene of a combination, and its Plummer sphere.
-fn plummer_scene(count: usize, way: usize) -> (NbodyScene, PointMasses) {
-    let (precision, arithmetic) = WAYS[way];
+fn plummer_scene(count: usize, configuration: usize) -> (NbodyScene, PointMasses) {
+    let (precision, arithmetic) = CONFIGURATIONS[configuration];
     let mut scene = NbodyScene { softening: SHARP, precision, arithmetic, ..NbodyScene::default() };
     (scene.start.kind, scene.start.count) = (StartKind::Plummer, count);
     let all =
@@ -107,10 +115,10 @@ fn plummer_scene(count: usize, way: usize) -> (NbodyScene, PointMasses) {
     (scene, all)
 }
 
-/// Times evaluations of the forces. Parameters: number of bodies, index into [`WAYS`], minimum seconds.
+/// Times evaluations of the forces. Parameters: number of bodies, index into [`CONFIGURATIONS`], minimum seconds.
 fn time_forces(parameters: &serde_json::Value) -> Result<CaseReading, StudyError> {
-    let (count, way, least): (usize, usize, f64) = parse_parameters(parameters)?;
-    let (scene, all) = plummer_scene(count, way);
+    let (count, configuration, least): (usize, usize, f64) = parse_parameters(parameters)?;
+    let (scene, all) = plummer_scene(count, configuration);
     let mut field = GravityField::new(&scene, &all)?;
     let mut into = zeros(all.entries());
     let mut sweep = || {
@@ -131,8 +139,8 @@ fn time_forces(parameters: &serde_json::Value) -> Result<CaseReading, StudyError
 
 /// Largest error of an acceleration over the largest acceleration: first for masses in the kernel's precision, then including the rounding of
 /// masses to single precision. Also true if two threads give the bits of one.
-fn errors_of_forces(count: usize, way: usize) -> Result<([f64; 2], bool), StudyError> {
-    let (scene, all) = plummer_scene(count, way);
+fn errors_of_forces(count: usize, configuration: usize) -> Result<([f64; 2], bool), StudyError> {
+    let (scene, all) = plummer_scene(count, configuration);
     let on = |threads: usize| {
         on_threads(threads, || {
             let mut into = zeros(all.entries());
@@ -166,10 +174,10 @@ fn direct_acceleration(all: &PointMasses, body: usize, softening: f64, is_rounde
     let seen = |value: f64| if is_rounded { f64::from(value as f32) } else { value };
     let mut sums = [[0.0_f64; 2]; 3];
     for other in (0..all.len()).filter(|&other| other != body) {
-        let way = [0, 1, 2].map(|axis| all.position[axis][other] - all.position[axis][body]);
-        let square = way.iter().map(|part| part * part).sum::<f64>() + seen(softening).powi(2);
+        let configuration = [0, 1, 2].map(|axis| all.position[axis][other] - all.position[axis][body]);
+        let square = configuration.iter().map(|part| part * part).sum::<f64>() + seen(softening).powi(2);
         let pull = seen(all.mass[other]) / (square * square.sqrt());
-        for (sum, part) in sums.iter_mut().zip(way) {
+        for (sum, part) in sums.iter_mut().zip(configuration) {
             let [before, lost] = *sum;
             let term = pull * part;
             let after = before + term;

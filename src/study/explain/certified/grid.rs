@@ -94,7 +94,7 @@ impl<'g> ConfigurationGrid<'g> {
         }
         let of_grid = asked.len();
         asked.extend(plans.iter().map(|plan| {
-            let choice = all.iter().find(|choice| choice.label() == plan.way).unwrap_or(&case.own);
+            let choice = all.iter().find(|choice| choice.label() == plan.configuration).unwrap_or(&case.own);
             (choice.clone(), plan.overrides.clone(), plan.step)
         }));
         let share = seconds * rayon::current_num_threads() as f64 / asked.len() as f64;

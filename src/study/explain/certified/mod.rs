@@ -222,5 +222,5 @@ fn in_a_line(plan: &RunPlan) -> String {
     let step = plan.step.map(|step| format!(", dt {}", significant(step, 3)));
     let seeds = (plan.seeds > 1).then(|| format!(", {} seeds", plan.seeds));
     let time = format!(", time {}", significant(plan.time, 3));
-    [Some(plan.way.clone()), step, Some(time), seeds].into_iter().flatten().collect()
+    [Some(plan.configuration.clone()), step, Some(time), seeds].into_iter().flatten().collect()
 }

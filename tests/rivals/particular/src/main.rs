@@ -83,13 +83,13 @@ fn main() {
         let all: Vec<_> =
             positions.iter().map(|p| PointMass::new(Vec3::from(p.map(|x| x as f32)), mass as f32)).collect();
         let seen: Vec<_> = positions.iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
-        let mut way = BruteForceSoftenedSIMD::<8, f32> { softening: SOFTENING as f32 };
-        let (rate, found) = sweeps(bodies, seconds, || way.compute(&all[..]));
+        let mut solver = BruteForceSoftenedSIMD::<8, f32> { softening: SOFTENING as f32 };
+        let (rate, found) = sweeps(bodies, seconds, || solver.compute(&all[..]));
         (rate, error(&seen, f64::from(mass as f32), |body| found[body].widened()))
     } else {
         let all: Vec<_> = positions.iter().map(|p| PointMass::new(DVec3::from(*p), mass)).collect();
-        let mut way = BruteForceSoftenedSIMD::<4, f64> { softening: SOFTENING };
-        let (rate, found) = sweeps(bodies, seconds, || way.compute(&all[..]));
+        let mut solver = BruteForceSoftenedSIMD::<4, f64> { softening: SOFTENING };
+        let (rate, found) = sweeps(bodies, seconds, || solver.compute(&all[..]));
         (rate, error(&positions, mass, |body| found[body].widened()))
     };
     println!("{{\"bodies\": {bodies}, \"rate\": {rate:e}, \"error\": {error:e}}}");

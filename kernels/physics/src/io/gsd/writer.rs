@@ -199,8 +199,8 @@ impl SchemaBox {
         if lx.is_finite() && ly.is_finite() {
             let centre = [x + 0.5 * lx, y + 0.5 * ly, 0.0];
             let side = |axis: usize, mut side: f64| {
-                let ways = particles.all().iter().map(|it| (it.position[axis] - centre[axis]).abs());
-                let reach = ways.fold(0.0, f64::max);
+                let distances = particles.all().iter().map(|it| (it.position[axis] - centre[axis]).abs());
+                let reach = distances.fold(0.0, f64::max);
                 while reach > 0.5 * side {
                     side *= 2.0;
                 }

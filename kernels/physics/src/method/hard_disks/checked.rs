@@ -188,7 +188,7 @@ fn chosen_engine_mask(
     let all = particles.all().iter().map(|disc| disc.radius);
     let displacement_limit = fast::displacement_limit(&scene.arena(*domain), all);
     let small = "the box is too small for lists: a disc would list others across two of its sides";
-    let way = match (scene.engine, displacement_limit) {
+    let engine = match (scene.engine, displacement_limit) {
         (EngineChoice::Fast, None) => {
             let error = values.spot(&ENGINE).error(MistakeKind::Geometry, small);
             return Err(error.expecting("engine = \"reference\" or \"auto\", or a larger box"));
@@ -204,8 +204,8 @@ fn chosen_engine_mask(
         (EngineChoice::Auto, _) => EngineChoice::Fast,
         (given, _) => given,
     };
-    scene.engine = way;
-    if way == EngineChoice::Fast {
+    scene.engine = engine;
+    if engine == EngineChoice::Fast {
         return Ok(None);
     }
     chosen_mask(values, scene, domain, radii, particles.len(), choices).map(Some)

@@ -29,15 +29,15 @@ pub(super) fn nanoseconds_per_collision(checked: &CheckedHardDisks) -> f64 {
 
 /// Nanoseconds per collision at a packing fraction: interpolated within the table, constant beyond its ends.
 fn interpolated_nanoseconds(fraction: f64, engine: EngineChoice) -> f64 {
-    let way = usize::from(engine == EngineChoice::Reference);
+    let column = usize::from(engine == EngineChoice::Reference);
     let [(first, lowest), .., (_, highest)] = COLLISION;
     let between = COLLISION.windows(2).find(|ends| (ends[0].0..=ends[1].0).contains(&fraction));
     match between {
         Some(&[(low, at_low), (high, at_high)]) => {
-            at_low[way] + (fraction - low) / (high - low) * (at_high[way] - at_low[way])
+            at_low[column] + (fraction - low) / (high - low) * (at_high[column] - at_low[column])
         }
-        _ if fraction < first => lowest[way],
-        _ => highest[way],
+        _ if fraction < first => lowest[column],
+        _ => highest[column],
     }
 }
 

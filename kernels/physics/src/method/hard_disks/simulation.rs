@@ -95,7 +95,7 @@ impl HardDiskSimulation {
         let kinetic = TotalMotion::of(discs.iter(), &arena, 0.0).kinetic();
         let start = [kinetic, potential(discs.iter(), &arena, 0.0)];
         let watch = CollapseMonitor::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
-        let way = match &checked.mask {
+        let engine_choice = match &checked.mask {
             Some(mask) => EngineConfiguration::Reference(mask.clone()),
             None => EngineConfiguration::Fast(checked.scene.instructions()),
         };
@@ -105,7 +105,7 @@ impl HardDiskSimulation {
             let (discs, _) = checked.discs();
             failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
         };
-        let engine = way.begin(arena, discs, 0.0).map_err(stopped)?;
+        let engine = engine_choice.begin(arena, discs, 0.0).map_err(stopped)?;
         Ok(HardDiskSimulation {
             engine,
             arena,

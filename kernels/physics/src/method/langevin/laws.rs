@@ -256,8 +256,8 @@ mod tests {
             let [mut x, mut y] = [1e30; 2].map(column);
             for (own, distance) in cells.clone().zip(distances) {
                 (x[own], y[own]) = (P::from_f64(0.0), P::from_f64(0.0));
-                let way = [distance * cosine - DIAMETER, distance * sine];
-                [x[own + 1], y[own + 1]] = way.map(P::from_f64);
+                let displacement = [distance * cosine - DIAMETER, distance * sine];
+                [x[own + 1], y[own + 1]] = displacement.map(P::from_f64);
             }
             let [mut fx, mut fy, mut energy, mut virial] = [0.0; 4].map(column);
             let memory = Memory::new()

@@ -74,11 +74,11 @@ mod tests {
         let force = |a: &Particle| {
             let mut sum = [0.0; 2];
             for b in particles.all().iter().filter(|b| b.id != a.id) {
-                let way = checked.domain.displacement(b.planar_position(), a.planar_position());
-                let square = way[0] * way[0] + way[1] * way[1];
+                let displacement = checked.domain.displacement(b.planar_position(), a.planar_position());
+                let square = displacement[0] * displacement[0] + displacement[1] * displacement[1];
                 if square < checked.reach * checked.reach {
                     let strength = law.potential().force(square.sqrt()) / square.sqrt();
-                    (0..2).for_each(|axis| sum[axis] += strength * way[axis]);
+                    (0..2).for_each(|axis| sum[axis] += strength * displacement[axis]);
                 }
             }
             sum

@@ -123,21 +123,22 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
         let anchored: Option<Vec<(u32, [f64; 2])>> = model
             .is_anchored::<S>()
             .then(|| particles.all().iter().map(|disc| model.anchored(disc.planar_position())).collect());
-        let places: Vec<[f64; 2]> = match &anchored {
-            Some(anchored) => anchored.iter().map(|(_, place)| *place).collect(),
+        let positions: Vec<[f64; 2]> = match &anchored {
+            Some(anchored) => anchored.iter().map(|(_, position)| *position).collect(),
             None => particles.all().iter().map(Particle::planar_position).collect(),
         };
         let velocity_scale = scales(model)[1];
         let mut state = Vec::new();
         for (freedom, row) in STATE.iter().enumerate().take(model.freedoms()) {
             for (k, &array) in row.iter().enumerate().take(model.scheme.values()) {
-                let column = particles.all().iter().zip(&places).map(|(disc, place)| match (k, freedom) {
-                    (0, 0 | 1) => place[freedom],
-                    (1, 0 | 1) => disc.velocity[freedom] * velocity_scale,
-                    (0, _) => disc.angle,
-                    (1, _) => disc.omega * velocity_scale,
-                    _ => 0.0,
-                });
+                let column =
+                    particles.all().iter().zip(&positions).map(|(disc, position)| match (k, freedom) {
+                        (0, 0 | 1) => position[freedom],
+                        (1, 0 | 1) => disc.velocity[freedom] * velocity_scale,
+                        (0, _) => disc.angle,
+                        (1, _) => disc.omega * velocity_scale,
+                        _ => 0.0,
+                    });
                 state.push(convert(array, column.collect()));
             }
         }

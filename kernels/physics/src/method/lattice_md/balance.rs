@@ -8,7 +8,7 @@ use crate::particles::{Particle, Particles};
 /// Terms that the energy of the grains is compared with: the start energy, the work of gravity and walls, and the dissipation in contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BalanceTerms {
-    way: GravityPath,
+    path: GravityPath,
     /// Kinetic, rotational and elastic energy at the start.
     start: f64,
 }
@@ -30,13 +30,13 @@ impl GravityPath {
         standing: impl FnOnce() -> Particles,
     ) -> GravityPath {
         let SceneProperties { domain, gravity, .. } = *scenery;
-        let mut way = GravityPath { domain, gravity, from: vec![] };
+        let mut path = GravityPath { domain, gravity, from: vec![] };
         if gravity != [0.0; 2] {
             let standing = standing();
             let places = standing.grains().iter().map(Particle::planar_position).enumerate();
-            way.from = places.map(|(number, place)| way.unfolded(number, place, crossings)).collect();
+            path.from = places.map(|(number, place)| path.unfolded(number, place, crossings)).collect();
         }
-        way
+        path
     }
 
     /// Unwraps a position (length) with the periods that the grain has crossed.
@@ -76,13 +76,13 @@ pub struct EnergyBalance {
 
 impl BalanceTerms {
     /// Starts at the first observation.
-    pub(super) fn begin(way: GravityPath, first: &Observation) -> BalanceTerms {
-        BalanceTerms { way, start: internal_energy(first) }
+    pub(super) fn begin(path: GravityPath, first: &Observation) -> BalanceTerms {
+        BalanceTerms { path, start: internal_energy(first) }
     }
 
     /// Returns the displacements of the grains.
     pub(super) fn gravity_path(&self) -> &GravityPath {
-        &self.way
+        &self.path
     }
 
     /// Scale of the balance: energy at the start plus the magnitudes of gravity work and wall work since.

@@ -122,9 +122,9 @@ impl SteppedGrains {
     }
 
     /// Sums over the discs and their contacts now, with the work of gravity since the start. The order of summation depends on the scene alone.
-    pub fn sums(&self, scenery: &SceneProperties, way: &GravityPath) -> ObservationSums {
+    pub fn sums(&self, scenery: &SceneProperties, path: &GravityPath) -> ObservationSums {
         let crossings = self.crossings();
-        self.stepping.sums(scenery, &|number, grain, position| way.work(number, grain, position, crossings))
+        self.stepping.sums(scenery, &|number, grain, position| path.work(number, grain, position, crossings))
     }
 
     /// Force along x and y and torque on every particle in the last step.

@@ -62,9 +62,9 @@ pub(super) fn begin(
     let CheckedGranularScene { scene, particles, geometry, .. } = checked;
     let model = model(checked);
     let scenery = SceneProperties::of(&model);
-    let way = GravityPath::begin(&scenery, grains.crossings(), || grains.unwrapped());
-    let sums = grains.sums(&scenery, &way);
-    let work = BalanceTerms::begin(way, &Observation::new(grains.steps(), grains.time(), &sums, &scenery));
+    let path = GravityPath::begin(&scenery, grains.crossings(), || grains.unwrapped());
+    let sums = grains.sums(&scenery, &path);
+    let work = BalanceTerms::begin(path, &Observation::new(grains.steps(), grains.time(), &sums, &scenery));
     let run_monitor = (purpose == StartPurpose::Run).then(|| {
         let mut run_monitor = RunMonitor::of(checked);
         run_monitor.sample_speeds(&sums.grains);

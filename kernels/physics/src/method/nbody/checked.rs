@@ -86,11 +86,11 @@ fn radius_shown(scene: &NbodyScene, bodies: &[InitialBody]) -> f64 {
     if scene.start.kind == StartKind::List {
         let count = bodies.len() as f64;
         let middle = [0, 1, 2].map(|axis| bodies.iter().map(|(_, at, _)| at[axis] / count).sum::<f64>());
-        let way = |at: &[f64; 3], axis: usize| at[axis] - middle[axis];
-        let far = |at: &[f64; 3]| libm::hypot(libm::hypot(way(at, 0), way(at, 1)), way(at, 2));
-        let mut ways: Vec<f64> = bodies.iter().map(|(_, at, _)| far(at)).collect();
-        ways.sort_by(f64::total_cmp);
-        scale = ways.get(ways.len() / 2).copied().unwrap_or(scale);
+        let offset = |at: &[f64; 3], axis: usize| at[axis] - middle[axis];
+        let far = |at: &[f64; 3]| libm::hypot(libm::hypot(offset(at, 0), offset(at, 1)), offset(at, 2));
+        let mut distances: Vec<f64> = bodies.iter().map(|(_, at, _)| far(at)).collect();
+        distances.sort_by(f64::total_cmp);
+        scale = distances.get(distances.len() / 2).copied().unwrap_or(scale);
     }
     scene.softening.max((SMALL * scale).clamp(f64::MIN_POSITIVE, f64::MAX))
 }

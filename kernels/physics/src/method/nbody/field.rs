@@ -204,7 +204,7 @@ impl GravityField {
     fn coefficient(&self, path: &[[[f64; ORDERS + 2]; 3]], body: usize, order: usize) -> [f64; 3] {
         let mut found = [0.0; 3];
         for other in (0..path.len()).filter(|&other| other != body) {
-            let way: [[f64; ORDERS]; 3] =
+            let displacement: [[f64; ORDERS]; 3] =
                 std::array::from_fn(|axis| {
                     std::array::from_fn(|k| {
                         if k <= order { path[other][axis][k] - path[body][axis][k] } else { 0.0 }
@@ -212,14 +212,14 @@ impl GravityField {
                 });
             let mut square = [0.0; ORDERS];
             square[0] = self.softening * self.softening;
-            for way in &way {
+            for displacement in &displacement {
                 for k in 0..=order {
-                    square[k] += (0..=k).map(|i| way[i] * way[k - i]).sum::<f64>();
+                    square[k] += (0..=k).map(|i| displacement[i] * displacement[k - i]).sum::<f64>();
                 }
             }
             let cube = power(&square, -1.5, order);
             for axis in 0..3 {
-                let term: f64 = (0..=order).map(|i| way[axis][i] * cube[order - i]).sum();
+                let term: f64 = (0..=order).map(|i| displacement[axis][i] * cube[order - i]).sum();
                 found[axis] += self.pull[other] * term;
             }
         }

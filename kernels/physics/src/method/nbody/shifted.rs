@@ -149,10 +149,10 @@ impl<P: backend::Precision> ForceSums for ShiftedPrograms<P> {
             memory.bind_write(Slot::new(body_sum_array(ParticleSum::Force(axis))), force);
             memory.bind_write(Slot::new(body_sum_array(ParticleSum::ForceRate(axis))), rate);
         }
-        let way = (self.execution, self.set);
+        let configuration = (self.execution, self.set);
         match velocity {
-            None => run(forces, &memory, count, way, stop)?,
-            Some(_) => run(with_rates, &memory, count, way, stop)?,
+            None => run(forces, &memory, count, configuration, stop)?,
+            Some(_) => run(with_rates, &memory, count, configuration, stop)?,
         }
         // As in PWP, the programs calculate forces only.
         if observed { potential(&self.masses, position, self.softening, stop) } else { Ok(0.0) }

@@ -442,8 +442,8 @@ fn half_mass_radius(bodies: &PointMasses, centre: [f64; 3]) -> f64 {
     let mut around: Vec<(f64, f64)> = (0..bodies.len())
         .map(|body| {
             let place = bodies.position_of(body);
-            let way = [0, 1, 2].map(|axis| place[axis] - centre[axis]);
-            (way.iter().map(|x| x * x).sum::<f64>().sqrt(), bodies.mass[body])
+            let displacement = [0, 1, 2].map(|axis| place[axis] - centre[axis]);
+            (displacement.iter().map(|x| x * x).sum::<f64>().sqrt(), bodies.mass[body])
         })
         .collect();
     around.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -197,8 +197,8 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         for to in &walls {
             let (from, cell) = (self.search.cells().cell(to.disc).unwrap_or_default(), to.cell);
             let centre = |cell: [usize; 2]| [0, 1].map(|axis| cell[axis] as f64 * edge[axis]);
-            let way = domain.displacement(centre(from), centre(cell));
-            let place = [0, 1].map(|axis| to.place[axis] + way[axis]);
+            let displacement = domain.displacement(centre(from), centre(cell));
+            let place = [0, 1].map(|axis| to.place[axis] + displacement[axis]);
             self.state.put(to.disc, place);
             stale |= self.search.lists().is_some_and(|lists| lists.has_strayed(to.disc, place));
         }

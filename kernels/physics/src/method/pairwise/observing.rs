@@ -23,7 +23,7 @@ use stripmine_kernels::{in_parts, in_pieces, over_parts, single_threaded_if};
 
 /// All discs at the end of a step, one entry for each disc in memory order, followed by sentinels.
 pub(super) struct CorrectedDiscs {
-    pub(super) place: [Vec<f64>; 2],
+    pub(super) position: [Vec<f64>; 2],
     pub(super) velocity: [Vec<f64>; 2],
     /// Empty if discs do not rotate.
     pub(super) omega: Vec<f64>,
@@ -40,8 +40,8 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
                 let [mut value, mut rate] = self.corrected_column(freedom);
                 if freedom < 2 {
                     let before = self.state.places()[freedom];
-                    let ways = value.iter().zip(before).map(|(now, before)| (now - before.to_f64()).abs());
-                    moved[freedom] = ways.fold(0.0, f64::max);
+                    let changes = value.iter().zip(before).map(|(now, before)| (now - before.to_f64()).abs());
+                    moved[freedom] = changes.fold(0.0, f64::max);
                 }
                 // The sentinels are farther apart than any pair acts.
                 let far = if freedom == 0 { 4.0 * self.system.reach } else { 0.0 };
@@ -51,7 +51,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             };
             let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
             let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
-            CorrectedDiscs { place: [x, y], velocity: [vx, vy], omega, moved: moved[0].hypot(moved[1]) }
+            CorrectedDiscs { position: [x, y], velocity: [vx, vy], omega, moved: moved[0].hypot(moved[1]) }
         })
     }
 
@@ -173,10 +173,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Returns a disc at the end of the step.
     pub(super) fn step_end_disc(&self, corrected: &CorrectedDiscs, disc: usize) -> StepEndDisc {
-        let [place, velocity] = [&corrected.place, &corrected.velocity]
+        let [position, velocity] = [&corrected.position, &corrected.velocity]
             .map(|columns| columns.each_ref().map(|along| along[disc]));
         let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
-        StepEndDisc { position: self.absolute_position(disc, place), velocity, omega }
+        StepEndDisc { position: self.absolute_position(disc, position), velocity, omega }
     }
 
     /// Computes the sums over the contacts.
@@ -202,7 +202,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
                 inverse_mass.extend([1.0; SENTINELS]);
             }
             let discs = DiscColumns {
-                place: corrected.place.each_ref().map(Vec::as_slice),
+                position: corrected.position.each_ref().map(Vec::as_slice),
                 velocity: corrected.velocity.each_ref().map(Vec::as_slice),
                 omega: &corrected.omega,
                 per_time: 1.0,

@@ -226,7 +226,7 @@ impl<S: Precision> MovingDiscs<S> {
     pub(crate) fn discs(&self, system: &PairSystem) -> fast::DiscColumns<'_, S> {
         let omega = if system.freedoms == 3 { &*self.columns[2][1] } else { &[] };
         fast::DiscColumns {
-            place: self.places(),
+            position: self.places(),
             velocity: [&self.columns[0][1], &self.columns[1][1]],
             omega,
             per_time: 1.0 / self.velocity_scale,

@@ -71,7 +71,7 @@ impl DenseSearch<'_> {
         let limit = registers.splat((MARGIN * beyond) as f32);
         let shape = occupancy.shape();
         let stride = shape.stride();
-        let [x, y] = occupancy.places();
+        let [x, y] = occupancy.positions();
         let radii = if VARY { occupancy.radii().unwrap_or(&[]) } else { x };
         let occupied = occupancy.occupied();
         let groups = shape.columns().div_ceil(GROUP);

@@ -77,7 +77,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
 
     fn find(
         &self,
-        places: [&[S]; 2],
+        positions: [&[S]; 2],
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut Candidates,
@@ -88,7 +88,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         assert!(codes.is_for(occupancy), "the codes are those of another lattice");
         let entries = occupancy.discs() + SENTINELS;
         assert!(
-            places.iter().all(|place| place.len() == entries),
+            positions.iter().all(|position| position.len() == entries),
             "a column of positions does not have {entries} entries"
         );
         *shape = Some(*occupancy.shape());
@@ -97,7 +97,17 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
             let reach = occupancy.reach();
             dispatch_native(
                 set,
-                SparseSearch { occupancy, codes, places, reach, rows, cursor, full: AT_ONCE, found, cells },
+                SparseSearch {
+                    occupancy,
+                    codes,
+                    positions,
+                    reach,
+                    rows,
+                    cursor,
+                    full: AT_ONCE,
+                    found,
+                    cells,
+                },
             )
         } else {
             let beyond = (1.0 + slack) * (1.0 + slack);

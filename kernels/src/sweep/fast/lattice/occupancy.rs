@@ -46,7 +46,7 @@ pub struct Occupancy {
     cell: Vec<u32>,
     index: AlignedColumn<u32>,
     sparse: bool,
-    place: [AlignedColumn<f32>; 2],
+    position: [AlignedColumn<f32>; 2],
     radius: Option<AlignedColumn<f32>>,
     occupied: CellBits,
     /// Halo cells, each with the cell that it repeats.
@@ -79,7 +79,7 @@ impl Occupancy {
         // The last register of the last row may extend beyond the padded lattice.
         let length = shape.padded() + GROUP + 1;
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
-        let places = if sparse { 0 } else { length };
+        let positions = if sparse { 0 } else { length };
         Occupancy {
             frame,
             half_width,
@@ -89,7 +89,7 @@ impl Occupancy {
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, length),
             sparse,
-            place: empty_positions(places),
+            position: empty_positions(positions),
             radius: (vary && !sparse).then(|| AlignedColumn::zeros(RADIUS, length)),
             occupied: CellBits::new(&shape, half_width),
             images: shape
@@ -117,7 +117,7 @@ impl Occupancy {
             discs,
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, self.index.len()),
-            place: empty_positions(self.place[0].len()),
+            position: empty_positions(self.position[0].len()),
             radius: self.radius.as_ref().map(|radius| AlignedColumn::zeros(RADIUS, radius.len())),
             occupied: CellBits::new(&self.shape, self.half_width),
             images: self.images.clone(),
@@ -186,7 +186,7 @@ impl Occupancy {
         &mut self,
         disc: usize,
         cell: [usize; 2],
-        place: [f64; 2],
+        position: [f64; 2],
         radius: f64,
     ) -> Result<(), CellTaken> {
         assert!(self.cell[disc] == NOWHERE, "disc {disc} is already in a cell");
@@ -204,7 +204,7 @@ impl Occupancy {
         if let Some(radii) = &mut self.radius {
             radii[at] = (radius * self.unit) as f32;
         }
-        self.update_position(disc, place);
+        self.update_position(disc, position);
         self.occupied.set(at, true);
         Ok(())
     }
@@ -247,8 +247,8 @@ impl Occupancy {
         self.cell[disc] = NOWHERE;
         self.index[at] = self.discs as u32;
         if !self.sparse {
-            self.place[0][at] = FAR;
-            self.place[1][at] = 0.0;
+            self.position[0][at] = FAR;
+            self.position[1][at] = 0.0;
         }
         if let Some(radii) = &mut self.radius {
             radii[at] = 0.0;
@@ -261,13 +261,13 @@ impl Occupancy {
     /// # Panics
     /// If the disc is in no cell.
     #[inline]
-    pub fn update_position(&mut self, disc: usize, place: [f64; 2]) {
+    pub fn update_position(&mut self, disc: usize, position: [f64; 2]) {
         let at = self.cell[disc] as usize;
         assert!(at < self.index.len(), "disc {disc} is in no cell");
         if self.sparse {
             return;
         }
-        for (column, along) in self.place.iter_mut().zip(place) {
+        for (column, along) in self.position.iter_mut().zip(position) {
             column[at] = (along * self.unit) as f32;
         }
     }
@@ -283,7 +283,7 @@ impl Occupancy {
                 self.occupied.set(cell, (disc as usize) < self.discs);
             }
             if !self.sparse {
-                self.place.iter_mut().for_each(|place| place[cell] = place[source]);
+                self.position.iter_mut().for_each(|position| position[cell] = position[source]);
             }
             if let Some(radii) = &mut self.radius {
                 radii[cell] = radii[source];
@@ -345,8 +345,8 @@ impl Occupancy {
     }
 
     #[inline]
-    pub(super) fn places(&self) -> [&[f32]; 2] {
-        [&self.place[0], &self.place[1]]
+    pub(super) fn positions(&self) -> [&[f32]; 2] {
+        [&self.position[0], &self.position[1]]
     }
 
     #[inline]
@@ -373,7 +373,7 @@ impl Occupancy {
     #[inline]
     pub fn copies(&mut self) -> Option<PositionCopies<'_>> {
         assert!(self.outside == 0, "{} discs are in no cell", self.outside);
-        let [x, y] = &mut self.place;
-        (!self.sparse).then_some(PositionCopies { cells: &self.cell, places: [x, y], unit: self.unit })
+        let [x, y] = &mut self.position;
+        (!self.sparse).then_some(PositionCopies { cells: &self.cell, positions: [x, y], unit: self.unit })
     }
 }

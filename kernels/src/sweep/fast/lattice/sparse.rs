@@ -27,7 +27,7 @@ use std::ops::Range;
 pub(super) struct SparseSearch<'a, S, P> {
     pub(super) occupancy: &'a Occupancy,
     pub(super) codes: &'a Codes<P>,
-    pub(super) places: [&'a [S]; 2],
+    pub(super) positions: [&'a [S]; 2],
     pub(super) reach: f64,
     pub(super) rows: Range<usize>,
     pub(super) cursor: &'a mut SearchCursor,
@@ -41,7 +41,8 @@ pub(super) struct SparseSearch<'a, S, P> {
 impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
     #[inline(always)]
     fn on<R: Registers<Lane = f32>>(self, _: R) {
-        let SparseSearch { occupancy, codes, places: [x, y], reach, rows, cursor, full, found, cells } = self;
+        let SparseSearch { occupancy, codes, positions: [x, y], reach, rows, cursor, full, found, cells } =
+            self;
         let (shape, occupied, index) = (occupancy.shape(), occupancy.occupied(), occupancy.index());
         let h = occupancy.half_width();
         let (ahead, around) = ((1 << h) - 1, (1 << (2 * h + 1)) - 1);
@@ -71,8 +72,8 @@ impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
                     near |= there << (h + (row - 1) * (2 * h + 1));
                 }
                 let before = found.len();
-                append_bits(found, near, |place| {
-                    PackedCandidate((cell << PackedCandidate::CODE) | (place * GROUP as u64))
+                append_bits(found, near, |bit| {
+                    PackedCandidate((cell << PackedCandidate::CODE) | (bit * GROUP as u64))
                 });
                 let mut kept = before;
                 for listed in before..found.len() {

@@ -31,7 +31,7 @@ const EVERYTHING: [bool; CHOICES.len()] = [false, true, true, true, true, true, 
 /// The four numbers by a convention, and their differences from BP93's.
 #[derive(Clone, Copy, PartialEq)]
 struct ConventionCounts {
-    way: CountingConvention,
+    convention: CountingConvention,
     counts: [u64; 4],
     /// Counts minus the printed numbers.
     off: [i64; 4],
@@ -51,11 +51,11 @@ impl ConventionCounts {
 /// conventions, those that give each of the four numbers, those that give all four, and the most numbers given by one.
 pub(super) fn conventions(question: &TableScene) -> Result<(ResultFrame, [usize; 7]), TableSceneError> {
     let texts = PrintedOperations::of(question)?;
-    let ways = (4..=6).flat_map(|values| {
+    let conventions = (4..=6).flat_map(|values| {
         (0..1u32 << CHOICES.len())
             .map(move |bits| CountingConvention(values, std::array::from_fn(|bit| bits >> bit & 1 == 1)))
     });
-    let mut all: Vec<ConventionCounts> = ways.map(|way| texts.counted(way)).collect();
+    let mut all: Vec<ConventionCounts> = conventions.map(|convention| texts.counted(convention)).collect();
     all.sort_by(|a, b| a.worst.total_cmp(&b.worst).then(b.exact().cmp(&a.exact())));
     let most = all.iter().map(ConventionCounts::exact).max().unwrap_or(0);
     let mut shown = all[..6].to_vec();
@@ -63,9 +63,9 @@ pub(super) fn conventions(question: &TableScene) -> Result<(ResultFrame, [usize;
     shown.extend(exact);
     shown.push(texts.counted(CountingConvention(question.choice.gear_values.into(), EVERYTHING)));
     let yes = |is: bool| if is { "yes" } else { "no" };
-    let mut rows = FrameBuilder::of(&shown).count("Gear values", |it| it.way.0);
+    let mut rows = FrameBuilder::of(&shown).count("Gear values", |it| it.convention.0);
     for (at, choice) in CHOICES.iter().enumerate() {
-        rows = rows.text(*choice, |it| yes(it.way.1[at]));
+        rows = rows.text(*choice, |it| yes(it.convention.1[at]));
     }
     let frame = rows
         .cells(NUMBERS, |it| it.counts)
@@ -111,8 +111,8 @@ impl PrintedOperations {
         })
     }
 
-    fn counted(&self, way: CountingConvention) -> ConventionCounts {
-        let CountingConvention(_, [_, _, folded, loads, stores, gathers, shifts, gravity]) = way;
+    fn counted(&self, convention: CountingConvention) -> ConventionCounts {
+        let CountingConvention(_, [_, _, folded, loads, stores, gathers, shifts, gravity]) = convention;
         let counts = |op: Op| match op.class() {
             OpClass::Load => loads,
             OpClass::Store => stores,
@@ -129,7 +129,7 @@ impl PrintedOperations {
         let operands = if loads { once(OpClass::Load) + once(OpClass::Store) } else { 0 };
         let stored = if stores { once(OpClass::Store) } else { 0 };
         let gear = |corrects| {
-            let [arithmetic, load, store, gather] = gear(way, corrects);
+            let [arithmetic, load, store, gather] = gear(convention, corrects);
             arithmetic + u64::from(loads) * load + u64::from(stores) * store + u64::from(gathers) * gather
         };
         let counts = [
@@ -140,7 +140,7 @@ impl PrintedOperations {
         ];
         let off = [0, 1, 2, 3].map(|part| counts[part] as i64 - PRINTED[part] as i64);
         let share = |part: usize| off[part].unsigned_abs() as f64 / PRINTED[part] as f64;
-        ConventionCounts { way, counts, off, worst: (0..4).map(share).fold(0.0, f64::max) }
+        ConventionCounts { convention, counts, off, worst: (0..4).map(share).fold(0.0, f64::max) }
     }
 }
 
@@ -186,11 +186,11 @@ mod tests {
                 for (part, corrects) in [(Part::Predictor, false), (Part::Corrector, true)] {
                     let run = ledger(&programs).part(part.name());
                     let arithmetic = run.filtered(|op| !op.class().moves_data()).total();
-                    let way = CountingConvention(
+                    let convention = CountingConvention(
                         gear_values.into(),
                         [scaled, true, !scaled, true, true, true, true, true],
                     );
-                    let [mut counted, mut loads, stores, gathers] = gear(way, corrects);
+                    let [mut counted, mut loads, stores, gathers] = gear(convention, corrects);
                     if corrects {
                         counted += 1; // Gravity.
                         // Each row here loads the discs' cells, whereas the programs load them once. A scaled row here loads r'' twice.

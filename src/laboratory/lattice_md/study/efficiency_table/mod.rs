@@ -86,7 +86,7 @@ pub(crate) fn efficiency_table(
     let texts = [CountedText::of(&source_question, machine)?, CountedText::of(question, machine)?];
     let [printed, ours] = &texts;
     let Lengths { discs, cells, .. } = ours.lengths;
-    let (conventions, ways) = conventions(&source_question)?;
+    let (conventions, convention_numbers) = conventions(&source_question)?;
     let printed_clocks = |part| printed_clocks(part, machine, discs as u64, cells as u64);
     let rows = Part::ALL.iter().map(|&part| {
         let [(printed, printed_text), (ours, by_ours)] = texts.each_ref().map(|text| text.sums(Some(part)));
@@ -114,7 +114,7 @@ pub(crate) fn efficiency_table(
         })
         .text("assumed numbers", |()| machine.assumed().join(", "));
     let names = ["ways", "give predictor", "give index", "give a place", "give corrector", "give all four"];
-    for (name, count) in names.into_iter().chain(["most numbers of one way"]).zip(ways) {
+    for (name, count) in names.into_iter().chain(["most numbers of one way"]).zip(convention_numbers) {
         summary = summary.count(name, |()| count);
     }
     Ok(FinishedItem::of([

@@ -73,13 +73,13 @@ impl Law<2> for AsPrinted {
     }
 
     /// BP93 (4)–(17); see [`Misprint`] for the deviations.
-    fn pair<E: Env<2>>(&self, env: E, place: E::Place, own: &[E::V; 2]) {
+    fn pair<E: Env<2>>(&self, env: E, partner: E::Partner, own: &[E::V; 2]) {
         let number = |value: f64| env.uniform(value);
         let (zero, one) = (number(0.0), number(1.0));
-        let both = |field| [env.own(field), env.partner(field, place)];
+        let both = |field| [env.own(field), env.partner(field, partner)];
 
         // (4)-(7)
-        let [dx, dy] = env.displacement(*own, place);
+        let [dx, dy] = env.displacement(*own, partner);
         let distance = (dx * dx + dy * dy).sqrt();
         let radii = both(ParticleField::Radius);
         let depth = radii[0] + radii[1] - distance;
@@ -129,13 +129,13 @@ impl Law<2> for AsPrinted {
             let component = E::V::select(touch, component, zero);
             env.own_add(sum, component);
             if E::BOTH_PARTNERS {
-                env.partner_sub(sum, place, component);
+                env.partner_sub(sum, partner, component);
             }
         }
         let shear = E::V::select(touch, shear, zero);
         env.own_add(ParticleSum::Torque, zero - radii[0] * shear);
         if E::BOTH_PARTNERS {
-            env.partner_sub(ParticleSum::Torque, place, radii[1] * shear);
+            env.partner_sub(ParticleSum::Torque, partner, radii[1] * shear);
         }
     }
 }

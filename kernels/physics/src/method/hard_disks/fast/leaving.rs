@@ -39,9 +39,9 @@ pub(super) fn leaving_time(
         }
         // Upper bound: the disc flies and falls straight away from the registered position.
         Some([gx, gy]) => {
-            let way = (displacement_limit - (dx * dx + dy * dy).sqrt()).max(0.0);
-            let root = (square + 2.0 * (gx * gx + gy * gy).sqrt() * way).sqrt();
-            now + 2.0 * way / (square.sqrt() + root)
+            let distance = (displacement_limit - (dx * dx + dy * dy).sqrt()).max(0.0);
+            let root = (square + 2.0 * (gx * gx + gy * gy).sqrt() * distance).sqrt();
+            now + 2.0 * distance / (square.sqrt() + root)
         }
     }
 }

@@ -18,7 +18,7 @@ pub(crate) struct DiscNeighbourLists {
     domain: Domain,
     displacement_limit: f64,
     /// Registered position of each disc (length).
-    places: AlignedColumn<[f64; 2]>,
+    positions: AlignedColumn<[f64; 2]>,
     /// One row per list. The row's own number fills the entries behind the listed discs; the last entry is the count. Every entry
     /// is therefore a valid number, as a list never holds all discs.
     rows: AlignedColumn<u32>,
@@ -82,7 +82,7 @@ impl DiscNeighbourLists {
         DiscNeighbourLists {
             domain,
             displacement_limit,
-            places: AlignedColumn::filled(10, [0.0; 2], count),
+            positions: AlignedColumn::filled(10, [0.0; 2], count),
             rows: empty_rows(count, stride.max(least)),
             stride: stride.max(least),
             cells: RegistrationCells::new(&domain, count, sight / AROUND as f64),
@@ -103,7 +103,7 @@ impl DiscNeighbourLists {
     /// Registered position of a disc (length).
     #[inline(always)]
     pub(super) fn registered_position(&self, disc: u32) -> [f64; 2] {
-        self.places[disc as usize]
+        self.positions[disc as usize]
     }
 
     /// Discs that a disc may meet.
@@ -124,17 +124,17 @@ impl DiscNeighbourLists {
     #[inline(always)]
     pub(crate) fn prefetch(&self, disc: usize) {
         self.rows.prefetch(disc * self.stride);
-        self.places.prefetch(disc);
+        self.positions.prefetch(disc);
     }
 
-    /// Registers unregistered discs at `places` inside the box (length). Each disc lists those registered before it, and they list
+    /// Registers unregistered discs at `positions` inside the box (length). Each disc lists those registered before it, and they list
     /// it.
     ///
     /// # Errors
     /// The disc whose list is full.
-    pub(super) fn begin(&mut self, places: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
-        for (disc, &place) in places.iter().enumerate() {
-            self.enter(disc as u32, place, &radius)?;
+    pub(super) fn begin(&mut self, positions: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
+        for (disc, &position) in positions.iter().enumerate() {
+            self.enter(disc as u32, position, &radius)?;
         }
         Ok(())
     }
@@ -146,22 +146,22 @@ impl DiscNeighbourLists {
     pub(crate) fn renew(
         &mut self,
         disc: u32,
-        place: [f64; 2],
+        position: [f64; 2],
         radius: impl Fn(u32) -> f64,
     ) -> Result<(), u32> {
-        self.cells.remove(disc, self.cells.of(&self.domain, self.places[disc as usize]));
+        self.cells.remove(disc, self.cells.of(&self.domain, self.positions[disc as usize]));
         let begin = disc as usize * self.stride;
         for entry in 0..self.rows[begin + self.stride - 1] as usize {
             let other = self.rows[begin + entry];
             self.remove_partner(other, disc);
         }
         clear(&mut self.rows[begin..begin + self.stride], disc);
-        self.enter(disc, place, &radius)
+        self.enter(disc, position, &radius)
     }
 
-    fn enter(&mut self, disc: u32, place: [f64; 2], radius: &impl Fn(u32) -> f64) -> Result<(), u32> {
-        self.places[disc as usize] = place;
-        let at = self.cells.coordinates(&self.domain, place);
+    fn enter(&mut self, disc: u32, position: [f64; 2], radius: &impl Fn(u32) -> f64) -> Result<(), u32> {
+        self.positions[disc as usize] = position;
+        let at = self.cells.coordinates(&self.domain, position);
         let reach = radius(disc) + 2.0 * self.displacement_limit;
         let [columns, rows] = [0, 1].map(|axis| self.cells.around(axis, at[axis]));
         // Candidates overwrite each other until one is near enough: a branch per candidate would be unpredictable.
@@ -170,7 +170,7 @@ impl DiscNeighbourLists {
             for column in columns {
                 let mut other = self.cells.first[row * self.cells.counts[0] + column];
                 while other != NONE {
-                    let [dx, dy] = self.domain.displacement(place, self.places[other as usize]);
+                    let [dx, dy] = self.domain.displacement(position, self.positions[other as usize]);
                     let near = (reach + radius(other)) * (1.0 + 1e-9);
                     found[count] = other;
                     count += usize::from(dx * dx + dy * dy < near * near);
@@ -246,9 +246,9 @@ impl RegistrationCells {
     }
 
     #[inline(always)]
-    fn coordinates(&self, domain: &Domain, place: [f64; 2]) -> [isize; 2] {
+    fn coordinates(&self, domain: &Domain, position: [f64; 2]) -> [isize; 2] {
         // No position is below the origin of the box.
-        [0, 1].map(|axis| ((place[axis] - domain.origin[axis]) / self.edge[axis]) as isize)
+        [0, 1].map(|axis| ((position[axis] - domain.origin[axis]) / self.edge[axis]) as isize)
     }
 
     /// Columns or rows searched around one of them.
@@ -279,8 +279,8 @@ impl RegistrationCells {
         row * self.counts[0] + column
     }
 
-    fn of(&self, domain: &Domain, place: [f64; 2]) -> usize {
-        self.round(self.coordinates(domain, place))
+    fn of(&self, domain: &Domain, position: [f64; 2]) -> usize {
+        self.round(self.coordinates(domain, position))
     }
 
     fn add(&mut self, disc: u32, cell: usize) {
@@ -330,20 +330,20 @@ mod tests {
                 let along = |axis: usize| domain.length(axis).min(90.0);
                 [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..along(axis)))
             };
-            let mut places: Vec<[f64; 2]> = (0..count).map(|_| draw()).collect();
+            let mut positions: Vec<[f64; 2]> = (0..count).map(|_| draw()).collect();
             let radius = |disc: u32| radii[disc as usize];
             let mut lists = DiscNeighbourLists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
-            lists.begin(&places, radius).unwrap();
+            lists.begin(&positions, radius).unwrap();
             for moved in 0..400 {
                 let disc = moved % count;
-                places[disc] = draw();
-                lists.renew(disc as u32, places[disc], radius).unwrap();
+                positions[disc] = draw();
+                lists.renew(disc as u32, positions[disc], radius).unwrap();
                 for a in [disc, (disc + 7) % count] {
                     let mut listed = lists.of(a as u32).to_vec();
                     listed.sort_unstable();
                     let near = |&b: &u32| {
                         let reach = radii[a] + radii[b as usize] + 2.0 * displacement_limit;
-                        b as usize != a && domain.distance(places[a], places[b as usize]) < reach
+                        b as usize != a && domain.distance(positions[a], positions[b as usize]) < reach
                     };
                     let expected: Vec<u32> = (0..count as u32).filter(near).collect();
                     assert_eq!(listed, expected);

@@ -60,12 +60,12 @@ struct QueuedEvent {
     time: f64,
     /// Number of the disc, and its index in memory.
     number: u32,
-    place: u32,
+    slot: u32,
 }
 
 impl QueuedEvent {
     /// No event; sorts last.
-    const NONE: QueuedEvent = QueuedEvent { time: f64::INFINITY, number: u32::MAX, place: 0 };
+    const NONE: QueuedEvent = QueuedEvent { time: f64::INFINITY, number: u32::MAX, slot: 0 };
 
     #[inline(always)]
     fn is_before(&self, other: &QueuedEvent) -> bool {
@@ -127,15 +127,15 @@ impl EventQueue {
 
     /// Sets the time (at least 0) of a disc's next event; the disc is given by its index and its number.
     #[inline(always)]
-    pub(super) fn set(&mut self, place: usize, number: u32, time: f64) {
-        self.levels[0][place / GROUP].0[place % GROUP] = time;
+    pub(super) fn set(&mut self, slot: usize, number: u32, time: f64) {
+        self.levels[0][slot / GROUP].0[slot % GROUP] = time;
         if time < self.end {
-            return self.insert(QueuedEvent { time, number, place: place as u32 });
+            return self.insert(QueuedEvent { time, number, slot: slot as u32 });
         }
-        let mut place = place;
+        let mut slot = slot;
         for level in &mut self.levels[1..] {
-            place /= GROUP;
-            let known = &mut level[place / GROUP].0[place % GROUP];
+            slot /= GROUP;
+            let known = &mut level[slot / GROUP].0[slot % GROUP];
             if time >= *known {
                 return;
             }
@@ -158,9 +158,9 @@ impl EventQueue {
         numbers: &[u32],
     ) -> Option<(f64, u32)> {
         loop {
-            while let Some(&QueuedEvent { time, place, .. }) = self.next.get(self.over) {
-                if self.times()[place as usize] == time {
-                    return Some((time, place));
+            while let Some(&QueuedEvent { time, slot, .. }) = self.next.get(self.over) {
+                if self.times()[slot as usize] == time {
+                    return Some((time, slot));
                 }
                 self.over += 1;
             }
@@ -172,14 +172,14 @@ impl EventQueue {
 
     /// Prefetches the cache line of a disc's time.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, place: usize) {
-        self.levels[0].prefetch(place / GROUP);
+    pub(crate) fn prefetch(&self, slot: usize) {
+        self.levels[0].prefetch(slot / GROUP);
     }
 
     /// Index of the disc whose event is `ahead` events after the next one, if that is sorted already.
     #[inline(always)]
     pub(crate) fn upcoming_disc(&self, ahead: usize) -> Option<u32> {
-        self.next.get(self.over + ahead).map(|entry| entry.place)
+        self.next.get(self.over + ahead).map(|entry| entry.slot)
     }
 
     /// Sorts the next events. Returns false if none are left.
@@ -242,12 +242,12 @@ impl EventQueue {
     fn sort<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) {
         let mut times = std::mem::take(&mut self.times);
         times.clear();
-        times.extend(self.found.iter().map(|&place| self.times()[place as usize]));
+        times.extend(self.found.iter().map(|&slot| self.times()[slot as usize]));
         times.resize(self.found.len().next_multiple_of(R::LANES), f64::INFINITY);
         self.next.clear();
         self.next.resize(self.found.len(), QueuedEvent::NONE);
         let mut are_pairs = true;
-        for (&time, &place) in times.iter().zip(&self.found) {
+        for (&time, &slot) in times.iter().zip(&self.found) {
             let own = registers.splat(time);
             let mut before = 0;
             for begin in (0..times.len()).step_by(R::LANES) {
@@ -261,7 +261,7 @@ impl EventQueue {
                 are_pairs = false;
                 before += 1;
             }
-            self.next[before] = QueuedEvent { time, number: numbers[place as usize], place };
+            self.next[before] = QueuedEvent { time, number: numbers[slot as usize], slot };
         }
         self.times = times;
         if are_pairs {
@@ -276,10 +276,10 @@ impl EventQueue {
     fn order_pairs(&mut self) {
         for at in 1..self.next.len() {
             let [a, b] = [self.next[at - 1], self.next[at]];
-            let [one, other] = [(a.number, a.place), (b.number, b.place)];
+            let [one, other] = [(a.number, a.slot), (b.number, b.slot)];
             let is_wrong = b.is_before(&a);
-            (self.next[at - 1].number, self.next[at - 1].place) = select_unpredictable(is_wrong, other, one);
-            (self.next[at].number, self.next[at].place) = select_unpredictable(is_wrong, one, other);
+            (self.next[at - 1].number, self.next[at - 1].slot) = select_unpredictable(is_wrong, other, one);
+            (self.next[at].number, self.next[at].slot) = select_unpredictable(is_wrong, one, other);
         }
     }
 }
@@ -312,9 +312,9 @@ mod tests {
                     queue.set(changed, numbers[changed], times[changed]);
                 }
                 let first = (0..count)
-                    .filter(|&place| times[place] < f64::INFINITY)
+                    .filter(|&slot| times[slot] < f64::INFINITY)
                     .min_by(|&a, &b| (times[a], numbers[a]).partial_cmp(&(times[b], numbers[b])).unwrap());
-                let expected = first.map(|place| (times[place], place as u32));
+                let expected = first.map(|slot| (times[slot], slot as u32));
                 assert_eq!(queue.first(Scalar::default(), &numbers), expected);
                 assert_eq!(&queue.times()[..count], times);
                 now = expected.map_or(now, |(time, _)| time);

@@ -313,8 +313,9 @@ pub(super) fn warnings(
     let time = scene.duration();
     let leaves = |grain: &Particle| {
         (0..2).filter(|&axis| !domain.is_periodic(axis)).any(|axis| {
-            let way = time * (grain.velocity[axis] + 0.5 * scene.domain.gravity[axis] * time);
-            !(0.0..=domain.length(axis)).contains(&(grain.position[axis] - domain.origin[axis] + way))
+            let displacement = time * (grain.velocity[axis] + 0.5 * scene.domain.gravity[axis] * time);
+            !(0.0..=domain.length(axis))
+                .contains(&(grain.position[axis] - domain.origin[axis] + displacement))
         })
     };
     let has_no_walls = particles.grain_count() == particles.len();

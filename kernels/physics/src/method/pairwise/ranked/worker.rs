@@ -385,8 +385,8 @@ fn longest_inner_range(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
 
 /// Columns of corrected discs that a sweep reads.
 fn of_corrected(corrected: &mut CorrectedDiscs) -> Vec<&mut [f64]> {
-    let CorrectedDiscs { place, velocity, omega, .. } = corrected;
-    let columns = place.iter_mut().chain(velocity).chain([omega]).filter(|column| !column.is_empty());
+    let CorrectedDiscs { position, velocity, omega, .. } = corrected;
+    let columns = position.iter_mut().chain(velocity).chain([omega]).filter(|column| !column.is_empty());
     columns.map(Vec::as_mut_slice).collect()
 }
 

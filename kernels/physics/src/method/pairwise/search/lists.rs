@@ -68,7 +68,7 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for ListSearch<S, P> {
 
     fn displacement_limit(&mut self) -> (DisplacementLimit<'_, S>, Option<PositionCopies<'_>>) {
         let [x, y] = &self.listed.made_at;
-        (DisplacementLimit::From { places: [x, y], distance: 0.5 * self.listed.skin }, None)
+        (DisplacementLimit::From { positions: [x, y], distance: 0.5 * self.listed.skin }, None)
     }
 
     fn sweep<L: Law<2> + Sync>(

@@ -132,7 +132,7 @@ fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
     discs: &DiscColumns<'_, f64>,
     set: InstructionSet,
 ) -> Result<SweepReport, ProgramError> {
-    let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.place[0].len()]);
+    let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.position[0].len()]);
     let asked = ObservationRequest { energy: true, ..ObservationRequest::default() };
     Sweep::for_share(finder.rows(), share).run(
         law,

@@ -14,7 +14,7 @@ pub fn words(entry: &MethodEntry, section: &str, name: &str) -> Vec<Vec<String>>
 }
 
 /// Every engine with every search, then each choice of the other keys alone.
-pub fn ways(entry: &MethodEntry, others: &[(&str, &str)]) -> Vec<Vec<String>> {
+pub fn configurations(entry: &MethodEntry, others: &[(&str, &str)]) -> Vec<Vec<String>> {
     let searches = words(entry, "search", "by");
     let engines = words(entry, "machine", "engine").into_iter();
     let engines =
