@@ -212,8 +212,8 @@ impl SceneTrials<'_> {
         // Among configurations that differ in cost alone, only the cheapest is tried.
         let is_dearer = |configuration: &MeasuredConfiguration, other: &MeasuredConfiguration| {
             let [own, others] = [configuration, other].map(|it| self.choice(it));
-            let is_alike =
-                own.agrees_on(&others, ChoiceEffect::Order) && own.agrees_on(&others, ChoiceEffect::Digits);
+            let is_alike = own.agrees_on(&others, ChoiceEffect::Order)
+                && own.agrees_on(&others, ChoiceEffect::Precision);
             let cost = |it: &MeasuredConfiguration| Some(it.cost? * it.step?);
             other.dropped.is_none()
                 && is_alike
@@ -232,7 +232,7 @@ impl SceneTrials<'_> {
             let own = self.choice(configuration);
             let leads = |other: &&MeasuredConfiguration| {
                 let other_choice = self.choice(other);
-                let is_finest = other_choice.agrees_on(&finest, ChoiceEffect::Digits);
+                let is_finest = other_choice.agrees_on(&finest, ChoiceEffect::Precision);
                 is_tried(other) && is_finest && other_choice.agrees_on(&own, ChoiceEffect::Order)
             };
             configurations.iter().find(leads).filter(|leader| leader.label != configuration.label)

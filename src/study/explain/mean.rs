@@ -199,7 +199,8 @@ impl SceneTrials<'_> {
         let choice = self.choice(of);
         for configuration in configurations.iter_mut() {
             let own = self.choice(configuration);
-            if own.agrees_on(&choice, ChoiceEffect::Order) && own.agrees_on(&choice, ChoiceEffect::Digits) {
+            if own.agrees_on(&choice, ChoiceEffect::Order) && own.agrees_on(&choice, ChoiceEffect::Precision)
+            {
                 configuration.dropped = Some(why.to_owned());
             }
         }

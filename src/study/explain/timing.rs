@@ -32,7 +32,7 @@ impl SceneTrials<'_> {
         let all = SettingChoice::all(self.case.entry.axes);
         let own = &self.case.own;
         let of_own_arithmetic = |choice: &&SettingChoice| {
-            choice.agrees_on(own, ChoiceEffect::Order) && choice.agrees_on(own, ChoiceEffect::Digits)
+            choice.agrees_on(own, ChoiceEffect::Order) && choice.agrees_on(own, ChoiceEffect::Precision)
         };
         let mut searches: Vec<&SettingChoice> = all.iter().filter(of_own_arithmetic).collect();
         // The scene's own is timed first, whatever it costs.

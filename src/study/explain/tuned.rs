@@ -31,7 +31,7 @@ pub(crate) fn tuned_settings(
     for configuration in findings.configurations.iter().filter(|configuration| configuration.cost.is_some()) {
         let choice = configuration.choice(case);
         let is_own =
-            [ChoiceEffect::Order, ChoiceEffect::Digits].iter().all(|&it| choice.agrees_on(&case.own, it));
+            [ChoiceEffect::Order, ChoiceEffect::Precision].iter().all(|&it| choice.agrees_on(&case.own, it));
         let overrides = choice.overrides();
         if is_own && overrides.iter().all(|(key, value)| is_open(key) || holds(key, value)) {
             let open = overrides.iter().filter(|(key, _)| is_open(key));

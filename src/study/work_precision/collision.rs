@@ -86,7 +86,7 @@ pub(crate) fn collision(
     let Some(reference) = over_phases(&first, REFERENCE * smallest)? else { return Ok(None) };
     let reference = mean(&reference);
     let is_alike = |choice: &SettingChoice| {
-        [ChoiceEffect::Digits, ChoiceEffect::Cost].iter().all(|&decides| choice.agrees_on(&first, decides))
+        [ChoiceEffect::Precision, ChoiceEffect::Cost].iter().all(|&decides| choice.agrees_on(&first, decides))
     };
     let schemes: Vec<SettingChoice> =
         SettingChoice::all(runs.subject.entry.axes).into_iter().filter(is_alike).collect();

@@ -76,7 +76,7 @@ pub(crate) struct DiagramConfiguration {
     /// Settings that decide the order.
     pub scheme: String,
     /// Settings that decide the precision.
-    pub digits: String,
+    pub precision: String,
     /// Settings that decide the cost alone.
     pub(crate) cost: String,
     /// True if search and execution are the scene's own.

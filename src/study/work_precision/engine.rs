@@ -48,10 +48,10 @@ pub(crate) fn configurations(
         Ok(DiagramConfiguration {
             label: choice.label(),
             scheme: choice.names(ChoiceEffect::Order).join(" "),
-            digits: choice.names(ChoiceEffect::Digits).join(" "),
+            precision: choice.names(ChoiceEffect::Precision).join(" "),
             cost: choice.names(ChoiceEffect::Cost).join(" "),
             is_primary: agrees(ChoiceEffect::Cost),
-            is_own_arithmetic: agrees(ChoiceEffect::Order) && agrees(ChoiceEffect::Digits),
+            is_own_arithmetic: agrees(ChoiceEffect::Order) && agrees(ChoiceEffect::Precision),
             each,
         })
     };
@@ -264,7 +264,7 @@ impl PlannedDiagram<'_> {
     pub(crate) fn orders(&self, runs: &[DiagramRun], reference: &DiagramReference) -> Vec<ConvergenceOrder> {
         let first = self.subject().reference(0);
         let is_fitted = |choice: &SettingChoice| {
-            choice.agrees_on(&first, ChoiceEffect::Digits)
+            choice.agrees_on(&first, ChoiceEffect::Precision)
                 && choice.agrees_on(&self.subject().own, ChoiceEffect::Cost)
         };
         let order = |configuration: usize, measure: Measure| {

@@ -148,7 +148,7 @@ fn errors(scenes: &NamedDiagrams) -> ResultFrame {
     let rows = FrameBuilder::of(own)
         .text("scene", |(name, ..)| *name)
         .text("integrator", |(_, it, _)| &it.scheme)
-        .text("precision", |(_, it, _)| &it.digits);
+        .text("precision", |(_, it, _)| &it.precision);
     let with_errors = |rows: FrameBuilder<_>, measure: Measure| {
         rows.short(measure.name(), move |(.., run): &(_, _, &DiagramRun)| run.error(measure))
     };

@@ -102,12 +102,13 @@ pub(crate) fn plan(
 
 fn is_run(choice: &SettingChoice, own: &SettingChoice, scope: DiagramScope) -> bool {
     let same = |decides| choice.agrees_on(own, decides);
-    let [order, digits, cost] = [ChoiceEffect::Order, ChoiceEffect::Digits, ChoiceEffect::Cost].map(same);
+    let [order, precision, cost] =
+        [ChoiceEffect::Order, ChoiceEffect::Precision, ChoiceEffect::Cost].map(same);
     match scope {
         DiagramScope { every_cost: true, .. } => true,
-        DiagramScope { every_precision: true, .. } => cost || order && digits,
+        DiagramScope { every_precision: true, .. } => cost || order && precision,
         // At most one setting differs.
-        _ => [order, digits, cost].into_iter().filter(|same| !same).count() < 2,
+        _ => [order, precision, cost].into_iter().filter(|same| !same).count() < 2,
     }
 }
 

@@ -76,7 +76,7 @@ fn diagram(data: &WorkPrecision, chart: &'static str, measure: Measure) -> Vec<C
     let of_configuration = |(at, it): (usize, &'_ DiagramConfiguration)| {
         let own = data.runs.iter().filter(|run| run.configuration == at);
         let points: Vec<_> = points_of(own, measure, DiagramRun::cost).filter(known).collect();
-        let name = format!("{} {}", it.scheme, it.digits);
+        let name = format!("{} {}", it.scheme, it.precision);
         if it.label == data.own {
             (0, format!("{name} (the scene's own)"), points)
         } else {

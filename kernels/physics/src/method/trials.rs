@@ -151,7 +151,7 @@ pub enum ChoiceEffect {
     /// The order of convergence.
     Order,
     /// The precision.
-    Digits,
+    Precision,
     /// The cost; results agree up to rounding.
     Cost,
 }

@@ -142,13 +142,13 @@ impl<'g> ConfigurationGrid<'g> {
         let has_own = |point: &GridPoint, decides: ChoiceEffect| point.choice.agrees_on(own, decides);
         let of_own = cheapest(&|point| {
             has_own(point, ChoiceEffect::Order)
-                && has_own(point, ChoiceEffect::Digits)
+                && has_own(point, ChoiceEffect::Precision)
                 && is_near(point, self.of.case.step())
         });
         let in_f64 = own.with(&[("precision", "f64")]);
         let at_limit = cheapest(&|point| {
             has_own(point, ChoiceEffect::Order)
-                && point.choice.agrees_on(&in_f64, ChoiceEffect::Digits)
+                && point.choice.agrees_on(&in_f64, ChoiceEffect::Precision)
                 && is_near(point, self.limit)
         });
         let planned = self.plans[number].as_ref()?;
@@ -251,7 +251,7 @@ impl StartEnsemble<'_> {
     ) -> Result<(SettingChoice, Option<f64>), String> {
         let own = &self.case.own;
         let is_alike = |it: &&SettingChoice| {
-            it.agrees_on(own, ChoiceEffect::Order) && it.agrees_on(own, ChoiceEffect::Digits)
+            it.agrees_on(own, ChoiceEffect::Order) && it.agrees_on(own, ChoiceEffect::Precision)
         };
         let searches: Vec<&SettingChoice> = all.iter().filter(is_alike).collect();
         let each = seconds / searches.len() as f64;

@@ -42,7 +42,7 @@ pub(super) const AXES: &[SettingAxis] = &[
     },
     SettingAxis {
         name: "precision",
-        decides: ChoiceEffect::Digits,
+        decides: ChoiceEffect::Precision,
         settings: settings! {
             "f64" [PRECISION = Precision::F64],
             "mixed" [PRECISION = Precision::Mixed],
