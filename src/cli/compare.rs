@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use stripmine_physics::domain::Domain;
 use stripmine_physics::method::{Methods, Prepared, Simulation, StartPurpose, Until, load};
-use stripmine_physics::number::significant;
+use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::SceneErrors;
 
@@ -150,6 +150,19 @@ fn trajectory_difference(
     seen
 }
 
+/// Describes the difference of the first sample with other bits.
+fn first_difference(seen: &TrajectoryDifference) -> String {
+    let by = |what: &str, most: f64| format!("{what} differ by up to {}", significant(most, 2));
+    match seen {
+        _ if seen.position > 0.0 => by("positions", seen.position),
+        _ if seen.velocity > 0.0 => by("velocities", seen.velocity),
+        _ if seen.unmatched > 0 => {
+            count_with_noun(seen.unmatched, "particle is in one run only", "particles are in one run only")
+        }
+        _ => "angular velocities or signs of zeros differ".to_owned(),
+    }
+}
+
 fn comparison_text(scene: &str, comparison: &Comparison) -> String {
     let looks = &comparison.looks;
     let answer = match comparison.first_difference {
@@ -158,9 +171,9 @@ fn comparison_text(scene: &str, comparison: &Comparison) -> String {
         Some(at) => {
             let (before, seen) = (&looks[at - 1], &looks[at]);
             format!(
-                "{scene}: same bits up to time {}; positions differ by up to {} at time {}",
+                "{scene}: same bits up to time {}; {} at time {}",
                 significant(before.time, 6),
-                significant(seen.position, 2),
+                first_difference(seen),
                 significant(seen.time, 6)
             )
         }

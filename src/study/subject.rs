@@ -5,6 +5,7 @@ use super::{SettingChoice, StudyCase, StudyError};
 use std::ops::Deref;
 use stripmine_physics::method::{AxisSetting, Every, Methods, Prepared, TheoreticalOrder, Trials, Until};
 use stripmine_physics::scene::{Overrides, SceneErrors, UNITS};
+use stripmine_physics::units;
 
 /// A scene under study.
 pub(crate) struct Subject {
@@ -91,11 +92,7 @@ impl Subject {
     /// Unit of a dimension, such as `1/time`, in the units of the scene; none for a pure number.
     pub(crate) fn unit(&self, dimension: &str) -> Option<String> {
         let label = self.values.choice(&UNITS).unwrap_or_default();
-        match (dimension, label.as_str()) {
-            ("", _) => None,
-            (_, "SI") => Some(dimension.replace("time", "s").replace("length", "m").replace("force", "N")),
-            _ => Some(label),
-        }
+        (!dimension.is_empty()).then(|| units::symbol(&label, dimension).unwrap_or(label))
     }
 
     /// Quantities that have a mean in a run of the scene.

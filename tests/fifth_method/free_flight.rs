@@ -135,6 +135,7 @@ impl Flight {
         let mut write = Write::default();
         self.clone().bind(&mut write);
         Prepared {
+            units: self.units.clone(),
             scene: write.to_toml(&VOCABULARY.keys),
             schedule: Schedule::of_steps(&self.run),
             target: self.run.target.clone(),

@@ -115,4 +115,5 @@ pub mod scene;
 pub mod signals;
 pub mod start;
 pub mod structure;
+pub mod units;
 pub mod words;

@@ -244,6 +244,8 @@ pub struct VectorProgram {
 
 /// Scene that is ready to run: its particles exist and every precondition holds.
 pub struct Prepared {
+    /// Name of the system of units.
+    pub units: String,
     /// Scene as TOML, with every value and every choice written out.
     pub scene: String,
     /// Length of the run and intervals of its output.

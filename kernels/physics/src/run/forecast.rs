@@ -8,6 +8,7 @@ use crate::method::{
 };
 use crate::number::{count_with_noun, significant};
 use crate::scene::{DT, Warning};
+use crate::units::with_symbol;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -34,7 +35,7 @@ pub fn step_forecast(prepared: &Prepared) -> Vec<Fact> {
     let said = limits.iter().map(|limit| {
         let words = format!(
             "at most {}, {}; {}",
-            significant(limit.step, 5),
+            with_symbol(&significant(limit.step, 5), &prepared.units, "time"),
             multiple(limit),
             effect_beyond_limit(limit)
         );
@@ -69,11 +70,12 @@ pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
     }
     let above = prepared.step_limits.iter().filter(|limit| limit.is_passed());
     let limit = above.max_by(|a, b| a.share.total_cmp(&b.share))?;
+    let in_units = |step: f64, digits| with_symbol(&significant(step, digits), &prepared.units, "time");
     let message = format!(
         "dt = {} is {} times the limit {} ({}); {}",
-        significant(limit.share * limit.step, 5),
+        in_units(limit.share * limit.step, 5),
         significant(limit.share, 3),
-        significant(limit.step, 5),
+        in_units(limit.step, 5),
         limit.name,
         effect_beyond_limit(limit)
     );

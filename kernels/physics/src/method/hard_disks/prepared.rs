@@ -11,6 +11,7 @@ use crate::method::reject_several_ranks;
 use crate::method::{Fact, PhysicsFailure, Prepared, Simulation, StartPurpose, Startable};
 use crate::number::significant;
 use crate::particles::{Particle, ParticleKind, Particles};
+use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -22,6 +23,7 @@ impl CheckedHardDisks {
     pub(super) fn prepared(self) -> Prepared {
         let scene = &self.scene;
         Prepared {
+            units: scene.units.clone(),
             scene: scene.to_toml(),
             schedule: scene.run.schedule(),
             target: scene.run.target.clone(),
@@ -51,6 +53,7 @@ impl CheckedHardDisks {
         let [x, y] = self.domain.lengths();
         let [low, high] = self.particles.radii().unwrap_or([0.0; 2]);
         let discs = self.particles.len();
+        let in_units = |lengths: String| with_symbol(&lengths, &self.scene.units, "length");
         let mut facts = vec![
             Fact::new("units", self.scene.units.as_str(), "units", self.scene.units.as_str()),
             Fact::new("grains", discs, "discs", discs.to_string()),
@@ -58,13 +61,13 @@ impl CheckedHardDisks {
                 "radii",
                 json!([low, high]),
                 "radii",
-                format!("{} to {}", significant(low, 7), significant(high, 7)),
+                in_units(format!("{} to {}", significant(low, 7), significant(high, 7))),
             ),
             Fact::new(
                 "sides",
                 json!([x, y]),
                 "box",
-                format!("{} × {}", significant(x, 7), significant(y, 7)),
+                in_units(format!("{} × {}", significant(x, 7), significant(y, 7))),
             ),
             Fact::data("periodic", json!(self.domain.periodic())),
             Fact::new("packing_fraction", self.packing_fraction(), "packing fraction", {

@@ -17,6 +17,7 @@ use crate::method::{
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
 use crate::structure::PairForces;
+use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 use std::f64::consts::PI;
@@ -32,6 +33,7 @@ impl CheckedLangevin {
         let (scene, word) = (&self.scene, self.scene.law.word());
         let only_repels = self.has_pairs() && !scene.law_at(self.diameter).is_attractive();
         Prepared {
+            units: scene.units.clone(),
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
             target: scene.run.target.clone(),
@@ -65,13 +67,14 @@ impl CheckedLangevin {
         let CheckedLangevin { scene, domain, particles, diameter, reach, .. } = self;
         let ([x, y], count) = (domain.lengths(), particles.len());
         let density = count as f64 * diameter * diameter / domain.area();
+        let in_units = |number: String, dimension| with_symbol(&number, &scene.units, dimension);
         let by = match &self.found {
             ChosenSearch::Lattice(shape, _) => {
                 format!("lattice of {} × {} cells", shape.columns(), shape.rows())
             }
             ChosenSearch::Sectors(grid) => format!("{} × {} sectors", grid.counts[0], grid.counts[1]),
             ChosenSearch::Lists(_, skin) => {
-                format!("neighbour lists with a skin of {}", significant(*skin, 5))
+                format!("neighbour lists with a skin of {}", in_units(significant(*skin, 5), "length"))
             }
         };
         let mut facts = vec![
@@ -81,14 +84,14 @@ impl CheckedLangevin {
                 "sides",
                 json!([x, y]),
                 "box",
-                format!("{} × {}", significant(x, 7), significant(y, 7)),
+                in_units(format!("{} × {}", significant(x, 7), significant(y, 7)), "length"),
             ),
             Fact::data("periodic", json!(domain.periodic())),
             Fact::new("density", density, "density N σ²/A", significant(density, 5)),
             Fact::new("law", scene.law.word(), "pairs", scene.law.word()),
         ];
         if self.has_pairs() {
-            facts.push(Fact::new("cutoff", *reach, "cut-off", significant(*reach, 7)));
+            facts.push(Fact::new("cutoff", *reach, "cut-off", in_units(significant(*reach, 7), "length")));
         }
         facts.push(Fact::new("search", scene.by.word(), "search", by));
         let mut noise = self.seed.to_string();
@@ -96,7 +99,9 @@ impl CheckedLangevin {
             noise += ", with the state at the start";
         }
         facts.push(Fact::new("noise_seed", self.seed, "seed of the noise", noise));
-        facts.push(Fact::words("steps", format!("{} of dt = {:?}", scene.run.steps, scene.dt)));
+        facts.push(Fact::words("steps", {
+            format!("{} of dt = {}", scene.run.steps, in_units(format!("{:?}", scene.dt), "time"))
+        }));
         facts
     }
 

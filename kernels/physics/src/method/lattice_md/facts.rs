@@ -5,6 +5,7 @@ use super::theory::limits;
 use super::theory::trial_contact::contact_error;
 use crate::method::Fact;
 use crate::number::significant;
+use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::json;
 
@@ -12,15 +13,18 @@ use serde_json::json;
 pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
     let CheckedGranularScene { scene, domain, particles, alike, geometry, estimates: e, .. } = checked;
     let or_none = |value: Option<f64>, words: fn(f64) -> String| value.map_or("nothing moves".into(), words);
+    let in_units = |number: f64, digits: usize, dimension| {
+        with_symbol(&significant(number, digits), &scene.units, dimension)
+    };
     let (grains, walls) = (particles.grain_count(), particles.len() - particles.grain_count());
     let mut facts = vec![
         Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
         Fact::new("grains", grains, "grains", grains.to_string()),
         Fact::new("wall_discs", walls, "wall discs", walls.to_string()),
         Fact::data("discs_alike", *alike),
-        Fact::new("radii", json!(geometry.radii), "radii", range(geometry.radii)),
+        Fact::new("radii", json!(geometry.radii), "radii", range(geometry.radii, &scene.units)),
         Fact::data("origin", json!(domain.corner())),
-        Fact::new("sides", json!(domain.lengths()), "box", sides(domain.lengths())),
+        Fact::new("sides", json!(domain.lengths()), "box", sides(domain.lengths(), &scene.units)),
         Fact::data("periodic", json!(domain.periodic())),
         Fact::data("search", scene.search.by.word()),
         Fact::data("engine", scene.machine.engine.word()),
@@ -31,13 +35,17 @@ pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
     facts.extend([
         Fact::data("dt", scene.integrator.dt),
         Fact::new("steps", scene.run.steps, "steps", {
-            let [dt, duration] = [scene.integrator.dt, scene.duration()].map(|time| significant(time, 7));
+            let [dt, duration] =
+                [scene.integrator.dt, scene.duration()].map(|time| in_units(time, 7, "time"));
             format!("{} of {dt}, {duration} in total", scene.run.steps)
         }),
         Fact::data("duration", scene.duration()),
-        Fact::new("estimates", json!(e), "approach speed", significant(e.approach_speed, 5)),
+        Fact::new("estimates", json!(e), "approach speed", in_units(e.approach_speed, 5, "length/time")),
         Fact::words("steps per contact", or_none(e.steps_per_contact, |steps| format!("{steps:.1}"))),
-        Fact::words("penetration of an impact", significant(e.impact_penetration, 4)),
+        Fact::words(
+            "penetration of an impact",
+            format!("{} diameters", significant(e.impact_penetration, 4)),
+        ),
         Fact::words("damping γ dt, dense 3 γ dt, limit", {
             [e.damping, e.network_damping, e.damping_limit].map(|number| significant(number, 4)).join(", ")
         }),
@@ -46,27 +54,27 @@ pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
 }
 
 /// Formats two lengths of any unit.
-fn sides(sides: [f64; 2]) -> String {
-    sides.map(|side| significant(side, 7)).join(" × ")
+fn sides(sides: [f64; 2], units: &str) -> String {
+    with_symbol(&sides.map(|side| significant(side, 7)).join(" × "), units, "length")
 }
 
 /// Formats a range of lengths.
-fn range(ends: [f64; 2]) -> String {
-    ends.map(|end| significant(end, 7)).join(" to ")
+fn range(ends: [f64; 2], units: &str) -> String {
+    with_symbol(&ends.map(|end| significant(end, 7)).join(" to "), units, "length")
 }
 
 /// Returns the facts about the lattice of a scene that needs one.
 fn lattice_facts(checked: &CheckedGranularScene) -> Vec<Fact> {
-    let geometry = &checked.geometry;
+    let (geometry, units) = (&checked.geometry, &checked.scene.units);
     let [columns, rows] = [geometry.shape.columns(), geometry.shape.rows()];
     let mask = 2 * geometry.mask.half_width() + 1;
     vec![
         Fact::data("columns", columns),
         Fact::data("rows", rows),
         Fact::new("cells", columns * rows, "cells", format!("{columns} × {rows} = {}", columns * rows)),
-        Fact::new("cell_edges", json!(geometry.frame.edge), "cell", sides(geometry.frame.edge)),
+        Fact::new("cell_edges", json!(geometry.frame.edge), "cell", sides(geometry.frame.edge, units)),
         Fact::new("cell_edge_bounds", json!(geometry.edge_bounds), "cell edge allowed", {
-            range(geometry.edge_bounds)
+            range(geometry.edge_bounds, units)
         }),
         Fact::new("mask", mask, "mask", format!("{mask} × {mask}")),
         Fact::new("occupancy", geometry.occupancy, "occupancy", significant(geometry.occupancy, 4)),
@@ -84,7 +92,7 @@ pub(super) fn expected_error(checked: &CheckedGranularScene) -> Option<Fact> {
         significant(error.energy, 2),
         error.order,
         error.phases,
-        significant(estimates.approach_speed, 4)
+        with_symbol(&significant(estimates.approach_speed, 4), &scene.units, "length/time")
     );
     Some(Fact::new("expected_error", json!(error), "error of a contact", words))
 }

@@ -40,6 +40,7 @@ impl CheckedGranularScene {
     fn prepared(self) -> Prepared {
         let scene = &self.scene;
         Prepared {
+            units: scene.units.clone(),
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
             target: scene.run.target.clone(),

@@ -15,6 +15,7 @@ use crate::method::{
     StepLimit, VectorProgram,
 };
 use crate::particles::{Particle, Particles};
+use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
 
@@ -23,6 +24,7 @@ impl CheckedNbody {
     pub(super) fn prepared(self) -> Prepared {
         let scene = &self.scene;
         Prepared {
+            units: scene.units.clone(),
             scene: scene.to_toml(),
             schedule: Schedule::of_steps(&scene.run),
             target: scene.run.target.clone(),
@@ -49,10 +51,15 @@ impl CheckedNbody {
             Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
             Fact::new("grains", count, "bodies", count.to_string()),
             Fact::new("start", scene.start.kind.word(), "start", scene.start.kind.word()),
-            Fact::new("softening", scene.softening, "softening", scene.softening.to_string()),
+            Fact::new("softening", scene.softening, "softening", {
+                with_symbol(&scene.softening.to_string(), &scene.units, "length")
+            }),
             self.constant_in_words(),
             Fact::new("integrator", scene.scheme.word(), "integrator", scene.scheme.word()),
-            Fact::words("steps", format!("{} of dt = {:?}", scene.run.steps, scene.dt)),
+            Fact::words("steps", {
+                let dt = with_symbol(&format!("{:?}", scene.dt), &scene.units, "time");
+                format!("{} of dt = {dt}", scene.run.steps)
+            }),
         ]
     }
 

@@ -6,6 +6,7 @@ use crate::method::lattice_md::check::{CheckedGranularScene, FASTEST, FEWEST_STE
 use crate::method::{LimitConsequence, StepLimit};
 use crate::number::significant;
 use crate::particles::longest_step;
+use crate::units::with_symbol;
 
 /// Packing fraction above which discs have several contacts at once even without gravity and dissipation.
 const DENSE: f64 = 0.5;
@@ -38,6 +39,10 @@ pub(crate) fn contact(checked: &CheckedGranularScene, faster: f64) -> HeadOn {
     }
 }
 
+fn in_units(checked: &CheckedGranularScene, number: f64, dimension: &str) -> String {
+    with_symbol(&significant(number, 4), &checked.scene.units, dimension)
+}
+
 fn one_contact(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let (scheme, damping) = (checked.scene.integrator.scheme, checked.scene.law.contact.normal_damping);
     let contact = contact(checked, FASTEST);
@@ -46,9 +51,9 @@ fn one_contact(checked: &CheckedGranularScene) -> Option<StepLimit> {
         "largest eigenvalue of the step matrix of {} on the spring and damper of a contact at {FASTEST} times the typical speed, \
          {}: ω = {}, γ = {}",
         scheme.name(),
-        significant(contact.speed, 4),
-        significant(contact.stiffest().sqrt(), 4),
-        significant(damping, 4)
+        in_units(checked, contact.speed, "length/time"),
+        in_units(checked, contact.stiffest().sqrt(), "1/time"),
+        in_units(checked, damping, "1/time")
     );
     Some(StepLimit {
         name: "one contact",
@@ -73,7 +78,7 @@ fn packing(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let step = largest_step(scheme, NETWORK * contact.stiffest(), NETWORK * law.normal_damping)?;
     let why = format!(
         "largest eigenvalue of the step matrix with {NETWORK} times spring and damper of a contact at the typical speed, {}: a disc pressed from all sides",
-        significant(contact.speed, 4)
+        in_units(checked, contact.speed, "length/time")
     );
     Some(StepLimit {
         name: "dense packing",
@@ -90,9 +95,9 @@ fn friction(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let law = &checked.scene.law;
     let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
     let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
-    let per_time = significant(rate, 4);
     let why = format!(
-        "largest eigenvalue of the step matrix on the drag of friction between two surfaces, {per_time} a unit of time"
+        "largest eigenvalue of the step matrix on the drag of friction between two surfaces: rate {}",
+        in_units(checked, rate, "1/time")
     );
     Some(StepLimit {
         name: "drag of friction",
@@ -114,8 +119,8 @@ fn of_duration(
     let duration = contact.duration();
     let why = format!(
         "an undamped contact at the typical speed, {}, lasts {}",
-        significant(contact.speed, 4),
-        significant(duration, 4)
+        in_units(checked, contact.speed, "length/time"),
+        in_units(checked, duration, "time")
     );
     let is_known = duration.is_finite() && duration > 0.0;
     let step = duration / steps;
@@ -147,8 +152,8 @@ fn mask(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let why = format!(
         "a disc at {fastest} may move {longest} in a step; beyond, contacts deeper than law.max_penetration = {depth} may \
          be missed",
-        fastest = significant(fastest, 4),
-        longest = significant(longest, 4)
+        fastest = in_units(checked, fastest, "length/time"),
+        longest = in_units(checked, longest, "length")
     );
     let step = longest / fastest;
     let share = checked.scene.integrator.dt / step;
