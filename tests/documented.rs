@@ -1,4 +1,4 @@
-//! Commands of the documents are run, and the output that they show is what came out.
+//! Commands of the documents are run, and their shown output is compared.
 //!
 //! A block ```` ```console ```` has lines `$ COMMAND`, each followed by its output, or by nothing where the output is not shown. `[..]` stands for any
 //! characters of a line, a line `…` for any number of lines, and a line `? 3` says that the command ends with exit code 3. Blocks of one document share a

@@ -11,7 +11,7 @@ pub(crate) fn film_page(shown: &Film, notes: &[String]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head { (head(&PreEscaped(&title))) }
+            head { (head(&PreEscaped(title))) }
             body.alone {
                 main {
                     h1 { (shown.title) }

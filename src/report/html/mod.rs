@@ -31,7 +31,7 @@ const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
 /// Text near the beginning of every such page, by which our pages are recognised.
-pub(crate) const MARK: &str = "<title>Stripmine: what came out</title>";
+pub(crate) const MARK: &str = "<title>Stripmine: ";
 
 /// Renders the page. `left_out` names items made by another version of the program. `drawn` returns the SVG of a figure.
 pub(crate) fn render(
@@ -47,7 +47,7 @@ pub(crate) fn render(
         (DOCTYPE)
         html lang="en" {
             head {
-                (head(&PreEscaped(MARK)))
+                (head(&PreEscaped(format!("{MARK}results</title>"))))
                 style { (PreEscaped(dark_picture_rules())) }
             }
             body {
@@ -84,7 +84,7 @@ fn compact_script(script: &str) -> String {
 }
 
 /// Head of every page, with the title element.
-fn head(title: &PreEscaped<&str>) -> Markup {
+fn head(title: &Markup) -> Markup {
     html! {
         meta charset="utf-8";
         meta name="viewport" content="width=device-width, initial-scale=1";
