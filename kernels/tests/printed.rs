@@ -8,7 +8,7 @@ use stripmine_kernels::isa::{Array, Memory};
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::law::{Axis, Law, ParticleSum};
 use stripmine_kernels::mask::Mask;
-use stripmine_kernels::printed::beside::{IntoBox, PrintedImages};
+use stripmine_kernels::printed::additions::{IntoBox, PrintedImages};
 use stripmine_kernels::printed::{
     ARRAYS, EQUATIONS, Printed, PrintedClear, PrintedCorrector, PrintedEnter, PrintedMap, PrintedPredictor,
     mass_of_fixed_disc,

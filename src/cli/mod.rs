@@ -9,12 +9,12 @@ mod display;
 mod explain;
 mod man;
 mod manual;
-mod meant;
 mod plot;
 mod processes;
 mod reproduce;
 mod run;
 mod scene;
+mod suggestion;
 
 use crate::console::Verb;
 use crate::console::{CommandFailure, Common, MOST_THREADS, clear_progress, print_answer, report_failure};
@@ -199,7 +199,7 @@ fn parse_arguments(arguments: &[OsString], methods: Methods) -> Result<Option<Ar
     match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => Ok(Some(matches)),
         Err(mistake) if mistake.use_stderr() => {
-            Err(CommandFailure::Arguments(meant::with_suggestion(mistake, arguments, &command, methods)))
+            Err(CommandFailure::Arguments(suggestion::with_suggestion(mistake, arguments, &command, methods)))
         }
         Err(answer) => print_answer(&answer).map(|()| None),
     }

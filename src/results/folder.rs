@@ -4,8 +4,8 @@
 //! it; a page, if it carries our mark; the whole folder, if it is empty or holds one of these, or one of our journals.
 
 use super::FinishedItem;
+use super::item_files::{self, LONGEST, read_file_bytes, section_and_files};
 use super::journal::{self, NAME as JOURNAL};
-use super::made::{self, LONGEST, read_file_bytes, section_and_files};
 use crate::claims;
 use crate::console::{CommandFailure, to_json};
 use crate::frame::ExpressionScope;
@@ -142,7 +142,7 @@ impl Folder {
         let Some(folder) = self.item(name) else { return Ok(ItemState::Absent) };
         let Some(provenance) = self.provenance(name)? else { return Ok(ItemState::OfAnotherVersion) };
         let made = match Page::of(name)? {
-            Some(page) => made::read(&folder, &page)?,
+            Some(page) => item_files::read(&folder, &page)?,
             None => None,
         };
         let section = |made: FinishedItem| self.current_section(name, (&folder, renews), &made, &provenance);
@@ -188,7 +188,7 @@ impl Folder {
     /// # Errors
     /// If they cannot be read.
     pub fn scope(&self, name: &str) -> Result<Option<ExpressionScope>, CommandFailure> {
-        self.item(name).map_or(Ok(None), |folder| made::scope(&folder))
+        self.item(name).map_or(Ok(None), |folder| item_files::scope(&folder))
     }
 
     /// Section of an item as the page shows it; none if the folder does not have it, or another version wrote it.

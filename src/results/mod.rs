@@ -2,9 +2,9 @@
 
 mod folder;
 mod item;
+mod item_files;
 mod journal;
 mod journal_error;
-mod made;
 mod meter;
 mod team;
 

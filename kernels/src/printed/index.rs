@@ -34,7 +34,7 @@ unsafe impl<P: Element> Kernel for PrintedClear<P> {
 /// Sets (2) and (3) where there is a particle. Vector length: the discs.
 ///
 /// The cell of each disc is stored: step 5 needs it to return from the lattice to the discs. Positions must be in the box
-/// ([`IntoBox`](super::beside::IntoBox)), otherwise the cell would be beyond the lattice.
+/// ([`IntoBox`](super::additions::IntoBox)), otherwise the cell would be beyond the lattice.
 #[derive(Clone, Copy, Debug)]
 pub struct PrintedEnter<S, P> {
     shape: LatticeShape,

@@ -36,7 +36,7 @@
 //! [`PrintedMap`] implements the last: three more operations on the lattice, exact, and the only reading that runs unchanged on a CRAY.
 //! `kernels/tests/printed.rs` demonstrates the others.
 
-pub mod beside;
+pub mod additions;
 mod corrector;
 mod forces;
 mod index;

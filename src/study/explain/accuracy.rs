@@ -4,7 +4,7 @@ use super::drift::StepDeviation;
 use super::findings::{Findings, MeasuredConfiguration};
 use super::lengths::StatisticalError;
 use super::recommended::RunPlan;
-use super::{ExplainError, PlanTarget, seen};
+use super::{ExplainError, PlanTarget, trial_runs};
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::results::{FinishedItem, Journal};
 use crate::study::trial::TrialControl;
@@ -52,9 +52,9 @@ pub(crate) fn accuracy(
     trial: TrialControl<'_>,
     (scene, progress, journal): (&str, &dyn Fn(f64), &Journal),
 ) -> Result<FinishedItem, ExplainError> {
-    let findings = seen::measure_findings(case, target, seconds, trial, (progress, journal))?;
+    let findings = trial_runs::measure_findings(case, target, seconds, trial, (progress, journal))?;
     let quick = PlanTarget { limit: f64::INFINITY, ..target.clone() };
-    let plan = seen::plan_or_scene(case, &quick, &findings, "").ok();
+    let plan = trial_runs::plan_or_scene(case, &quick, &findings, "").ok();
     Ok(made(scene, target, &findings, plan.as_ref(), case))
 }
 

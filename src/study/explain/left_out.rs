@@ -3,8 +3,8 @@
 use super::PlanTarget;
 use super::decisions::left_out;
 use super::recommended::SimplerModelReport;
-use super::seen::measure_with_simpler_models;
-use super::twins::has_simpler;
+use super::simpler_models::has_simpler;
+use super::trial_runs::measure_with_simpler_models;
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::results::{FinishedItem, Progress, ProgressMeter};
 use crate::study::trial::{Stopwatch, TrialControl};

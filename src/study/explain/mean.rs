@@ -245,8 +245,8 @@ impl SceneTrials<'_> {
                 self.case.duration()?.max(LONGER * sample.time)
             }
             // Whole runs have means of their own.
-            _ if self.target.window.is_some() => super::whole::RUNS[0] as f64 * self.whole_time()?,
-            AverageOutcome::Changing { .. } => super::whole::RUNS[0] as f64 * self.case.duration()?,
+            _ if self.target.window.is_some() => super::whole_runs::RUNS[0] as f64 * self.whole_time()?,
+            AverageOutcome::Changing { .. } => super::whole_runs::RUNS[0] as f64 * self.case.duration()?,
             _ => return None,
         };
         // The present trials were too short, whatever their cost per unit of time.

@@ -5,20 +5,20 @@
 //! (`plan`). Nothing here is fitted: what the trials could not resolve counts as error, with its error bar.
 
 pub(crate) mod accuracy;
-mod alike;
 mod another_start;
 mod as_it_stands;
+mod auto_settings;
 mod bias;
+mod cache;
 pub(crate) mod certified;
 mod collisions;
+mod conservation;
 mod creep;
 mod decisions;
 mod differences;
 mod drift;
 mod drifts;
 mod findings;
-mod keeping;
-mod kept;
 pub(crate) mod left_out;
 mod lengths;
 mod margin;
@@ -28,32 +28,32 @@ mod plan;
 mod recommended;
 #[cfg(test)]
 mod rules;
-mod seen;
 mod shadow;
+mod similarity;
+mod simpler_models;
 mod skin;
 mod timing;
-mod tuned;
-mod twins;
-mod unreached;
-mod whole;
+mod trial_runs;
+mod unreachable;
+mod whole_runs;
 mod words;
 
-pub(crate) use kept::{PlanCache, PlanCacheError};
+pub(crate) use auto_settings::tuned_settings;
+pub(crate) use cache::{PlanCache, PlanCacheError};
 use plan::in_unit;
 pub(crate) use recommended::RunPlan;
-pub(crate) use tuned::tuned_settings;
-pub(crate) use unreached::Unreached;
+pub(crate) use unreachable::Unreached;
 pub(crate) use words::{page, seconds, with_unit};
 
 use super::StudyCase;
 use crate::results::{Journal, JournalError};
 use crate::study::trial::TrialControl;
 use findings::Findings;
-use seen::{measure_findings, plan_or_scene};
 use stripmine_physics::method::{ObservedQuantity, QuantityKind};
 use stripmine_physics::number::significant;
 use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Width;
+use trial_runs::{measure_findings, plan_or_scene};
 
 /// Longest total time of the trials (s): by default, and with `--patient`.
 pub(crate) const SECONDS: [f64; 2] = [10.0, 60.0];

@@ -7,7 +7,7 @@ use super::findings::{Findings, MeasuredConfiguration};
 use super::lengths::{PlanCandidate, StatisticalError, cheapest_optimum, length_and_seeds};
 use super::optimum::SHORTEST;
 use super::recommended::{ExpectedError, LikelyRange, OwnResult, RunPlan};
-use super::unreached::Unreached;
+use super::unreachable::Unreached;
 use crate::study::trial::ROWS;
 use crate::study::{SettingChoice, StudyCase, TIE, rounded};
 use stripmine_physics::method::Every;

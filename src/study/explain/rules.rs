@@ -4,7 +4,7 @@ use super::as_it_stands::AS_IT_STANDS;
 use super::bias::{Bias, StepDifference};
 use super::findings::{Findings, MeasuredConfiguration};
 use super::plan::plan;
-use super::seen::{measure_findings, plan_or_scene};
+use super::trial_runs::{measure_findings, plan_or_scene};
 use super::{ExplainError, PlanTarget, page};
 use crate::results::Journal;
 use crate::study::trial::MeanEstimate;

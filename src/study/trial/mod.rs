@@ -2,13 +2,13 @@
 
 pub(super) mod any_number;
 mod failure;
-mod known;
+mod mean_error;
 mod pairs;
 mod sample;
 mod stopwatch;
 
 pub(crate) use failure::{FailureCause, RunFailure};
-pub(crate) use known::{MeanEstimate, ROWS, RowPace};
+pub(crate) use mean_error::{MeanEstimate, ROWS, RowPace};
 pub(crate) use pairs::{
     PairedConfigurations, PairedMeans, TOGETHER, Window, run_pairs, shown_part, steady_bias,
 };

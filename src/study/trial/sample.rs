@@ -1,7 +1,7 @@
 //! A trial run of some seconds: the cost of a unit of time, and an estimate of a mean.
 
 use super::TrialControl;
-use super::known::{MeanEstimate, ROWS, RowPace};
+use super::mean_error::{MeanEstimate, ROWS, RowPace};
 use std::sync::atomic::Ordering;
 use stripmine_physics::averages::{Average, AverageOutcome, AveragedRows};
 use stripmine_physics::method::{

@@ -8,7 +8,7 @@
 
 use super::FileError;
 use super::growing_file::{FileMark, GrowingFile, GrowingFileError};
-use super::opened::SinkKind;
+use super::open_sinks::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::run_moment::{FramesEvery, RunHeader, RunMoment};
 use super::sink::Sink;

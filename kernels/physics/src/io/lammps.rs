@@ -4,7 +4,7 @@
 
 use super::extxyz::{DEPTH, ParticleFrame};
 use super::growing_file::GrowingFile;
-use super::opened::SinkKind;
+use super::open_sinks::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::run_moment::RunMoment;
 use super::sink::{TextFormat, TextSink};

@@ -1,7 +1,7 @@
 //! Descriptions of the formats for particles.
 
 use super::extxyz::ParticleFrame;
-use super::opened::SinkKind;
+use super::open_sinks::SinkKind;
 use super::trajectory::FrameReading;
 use std::fs::File;
 use std::io::{self, BufWriter};

@@ -5,7 +5,7 @@ use super::folder::{EVENTS, RunFolder, THERMO};
 use super::structured::requested_observables;
 use crate::io::checkpoint::CheckpointCounter;
 use crate::io::growing_file::FileMark;
-use crate::io::opened::{OpenSink, SinkKind};
+use crate::io::open_sinks::{OpenSink, SinkKind};
 use crate::io::output_format::{FrameWriting, OutputFormat};
 use crate::io::run_moment::{RunHeader, RunMoment};
 use crate::io::sink::{TextSink, WriteOccasion};

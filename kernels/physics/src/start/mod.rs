@@ -2,15 +2,15 @@
 
 mod checks;
 mod compressing;
+mod creation;
 mod filling;
-mod making;
 mod meshing;
 mod noise;
 
 pub use checks::outside;
 pub(crate) use checks::{deepest_overlap, disc_noun, overlaps, rounded_to_nine_digits};
-pub(crate) use making::radii;
-pub use making::{InitialState, create_initial_state};
+pub(crate) use creation::radii;
+pub use creation::{InitialState, create_initial_state};
 pub(crate) use noise::noise_seed;
 
 use crate::particles::Particle;

@@ -13,7 +13,7 @@ pub(crate) use frames::made;
 pub(crate) use scenes::{PlanCase, QUICK, SCENES};
 
 use super::recommended::RunPlan;
-use super::seen::{measure_findings, plan_or_scene};
+use super::trial_runs::{measure_findings, plan_or_scene};
 use super::{PlanTarget, in_unit};
 use crate::results::{Journal, Progress, ProgressMeter};
 use crate::study::trial::{Stopwatch, TrialControl};

@@ -2,7 +2,7 @@
 
 use super::super::PlanTarget;
 use super::super::recommended::RunPlan;
-use super::super::whole::displaced_start;
+use super::super::whole_runs::displaced_start;
 use crate::study::trial::{SampleSpan, TrialControl, TrialSample};
 use crate::study::{StudyCase, first_line};
 use rayon::{ThreadPoolBuildError, ThreadPoolBuilder};

@@ -3,7 +3,7 @@
 use super::FrameContents;
 use super::error::{Mistake, XyzMistakeKind, XyzMistakeList};
 use super::format::ForeignFormat;
-use super::real::number;
+use super::number_format::number;
 use super::rows::XyzRowLayout;
 
 /// Content of a comment line.

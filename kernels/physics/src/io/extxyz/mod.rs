@@ -17,8 +17,8 @@
 mod error;
 mod format;
 mod header;
+mod number_format;
 mod reader;
-mod real;
 mod rows;
 mod writer;
 

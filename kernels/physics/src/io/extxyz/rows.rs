@@ -2,7 +2,7 @@
 
 use super::FrameContents;
 use super::error::{Mistake, XyzMistakeKind};
-use super::real::number;
+use super::number_format::number;
 use crate::particles::{Particle, ParticleKind};
 
 /// Column that a frame may have.

@@ -2,7 +2,7 @@
 
 use super::{DEPTH, OF_ASE, PROPERTIES, ParticleFrame, XyzFrames};
 use crate::io::growing_file::GrowingFile;
-use crate::io::opened::SinkKind;
+use crate::io::open_sinks::SinkKind;
 use crate::io::output_format::{FrameWriting, OutputFormat};
 use crate::io::run_moment::RunMoment;
 use crate::io::sink::{TextFormat, TextSink};

@@ -24,7 +24,7 @@ pub use error::{GsdErrorKind, GsdLocation, GsdReadError};
 pub use reader::GsdFrames;
 pub use writer::{GsdWriter, LoggedFrame};
 
-use super::opened::SinkKind;
+use super::open_sinks::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::trajectory::{FrameReading, reader};
 

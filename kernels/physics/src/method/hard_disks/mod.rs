@@ -13,13 +13,14 @@ mod fall;
 mod fast;
 mod floor;
 mod followed;
-mod foreseen;
+mod forecast;
 mod idle;
 pub mod keys;
 mod operations;
 pub mod options;
 #[cfg(test)]
 mod oracle;
+mod overlap_repair;
 mod prepared;
 mod presets;
 mod quantities;
@@ -27,7 +28,6 @@ pub mod reference;
 mod restored;
 mod scene;
 mod simulation;
-mod squeezed;
 mod sums;
 
 pub use compress::compress;

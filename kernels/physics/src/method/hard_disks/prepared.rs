@@ -2,7 +2,7 @@
 
 use super::checked::CheckedHardDisks;
 use super::collision_log::COLUMNS;
-use super::foreseen::{enskog_collision_rate, nanoseconds_per_collision, thermal_speed};
+use super::forecast::{enskog_collision_rate, nanoseconds_per_collision, thermal_speed};
 use super::reference::grid::ExclusiveGridSize;
 use super::simulation::{HardDiskSimulation, RecordOptions};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};

@@ -1,6 +1,6 @@
 //! Checks a scene of particles in a bath against the preconditions of the method.
 
-use super::found::{ChosenSearch, choose_pair_search};
+use super::chosen_search::{ChosenSearch, choose_pair_search};
 use super::limits::{CollidingParticles, lan17_step_bound, step_limits};
 use super::scene::LangevinScene;
 use crate::domain::Domain;

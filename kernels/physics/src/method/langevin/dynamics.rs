@@ -1,7 +1,7 @@
 //! Stepper of a scene, assembled from its pair law, integrator and search.
 
 use super::checked::CheckedLangevin;
-use super::found::ChosenSearch;
+use super::chosen_search::ChosenSearch;
 use super::laws::SweptLaw;
 use super::options::{SchemeKind, SortKind};
 use crate::domain::Domain;

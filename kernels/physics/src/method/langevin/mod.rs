@@ -2,9 +2,9 @@
 
 mod benches;
 mod checked;
+mod chosen_search;
 mod dynamics;
 mod entry;
-mod found;
 pub mod keys;
 pub mod laws;
 mod limits;

@@ -1,8 +1,8 @@
 //! Prepared scene of Langevin dynamics: facts, memory forecast, settings and the start of a simulation.
 
 use super::checked::CheckedLangevin;
+use super::chosen_search::ChosenSearch;
 use super::dynamics::BathDynamics;
-use super::found::ChosenSearch;
 use super::losses;
 use super::options::PairSearchKind;
 use super::programs::programs;

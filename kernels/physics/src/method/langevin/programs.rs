@@ -1,8 +1,8 @@
 //! Force program of a pair law for the vector machine, over the offsets of a mask on the lattice.
 
 use super::checked::CheckedLangevin;
+use super::chosen_search::widest_cell;
 use super::dynamics::BathDynamics;
-use super::found::widest_cell;
 use crate::method::VectorProgram;
 use crate::method::pairwise::{Dynamics, LawTask};
 use stripmine_kernels::law::Law;

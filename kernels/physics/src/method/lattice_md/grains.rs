@@ -3,8 +3,8 @@
 use super::balance::GravityPath;
 use super::contacts::{ContactSearch, ProgramExecution};
 use super::fast;
-use super::judge::{check_contact_depths, check_step_lengths};
 use super::simulation::LatticeMd;
+use super::step_checks::{check_contact_depths, check_step_lengths};
 use super::walls::wall_power;
 use super::{GranularModel, GranularTotals, Lengths, Timings};
 use crate::io::checkpoint::CheckpointColumn;

@@ -96,7 +96,7 @@ fn printed_programs(model: &GranularModel) -> Vec<StepProgram> {
     let GranularModel { shape, frame, ref mask, contact, coordinates, .. } = *model;
     let law = printed::Printed { contact };
     let forces = Forces::<f64, _>::new(law, mask, shape, frame, coordinates).asked(model.asked());
-    let into_box = printed::beside::IntoBox::<f64>::new(shape, frame);
+    let into_box = printed::additions::IntoBox::<f64>::new(shape, frame);
     let mut programs = vec![
         step(Part::Predictor, VectorLength::Grains, printed_predictor(model)),
         step(Part::Box, VectorLength::Discs, Box::new(Program::new(into_box))),
@@ -113,7 +113,7 @@ fn printed_programs(model: &GranularModel) -> Vec<StepProgram> {
         step(Part::Halo, VectorLength::Discs, Box::new(Program::new(CheckIndex))),
     ];
     if shape.periodic().contains(&true) {
-        let images = printed::beside::PrintedImages::<f64>::default();
+        let images = printed::additions::PrintedImages::<f64>::default();
         programs.push(step(Part::Halo, VectorLength::HaloCells, Box::new(Program::new(images))));
     }
     programs.extend([

@@ -9,6 +9,7 @@ mod encounter;
 mod entry;
 pub mod field;
 pub mod keys;
+mod monitor;
 pub mod options;
 mod prepared;
 mod presets;
@@ -25,7 +26,6 @@ mod swept;
 #[cfg(test)]
 mod tests;
 mod trials;
-mod watch;
 
 pub use entry::ENTRY;
 

@@ -12,35 +12,35 @@
 //! followed by whatever the method itself counts and checks after each of the two. Positions are relative to the centres of cells, so that single
 //! precision suffices in large boxes. No sum depends on the number of threads or the order of the discs in memory.
 
-mod carried;
 mod cells;
 mod columns;
 mod compiled;
 mod crossings;
+mod disc_names;
 mod elapsed;
 mod engine;
 mod forces;
-mod losing;
-mod named;
 mod observing;
 mod ranked;
+mod removal;
 mod saved;
 pub(crate) mod search;
 mod state;
+mod state_form;
 mod stepping;
 mod timings;
 mod unwrapped;
 
-pub(crate) use carried::{CarriedQuery, CarriedState};
 pub(crate) use columns::real_column;
 use compiled::CompiledDynamics;
 pub(super) use crossings::Crossings;
+pub(super) use disc_names::outside;
+pub(crate) use disc_names::{NameableDiscs, conflict, not_finite};
 pub use elapsed::Elapsed;
 pub(super) use engine::PairEngine;
 pub(crate) use forces::PairForcesTask;
-pub(super) use named::outside;
-pub(crate) use named::{NameableDiscs, conflict, not_finite};
 pub(super) use ranked::begin;
+pub(crate) use state_form::{CarriedQuery, CarriedState};
 pub(crate) use stepping::{GravityWork, RemovableDiscs, SteppingDiscs};
 pub use timings::{HaloTraffic, Phase, Timings};
 pub(crate) use unwrapped::{unwrapped, wrapped};

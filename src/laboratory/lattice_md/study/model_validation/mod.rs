@@ -2,7 +2,7 @@
 //! calibration.
 
 mod errors;
-mod strangers;
+mod uncalibrated_laws;
 
 use super::StudyError;
 use super::calibration::calibrate;
@@ -14,12 +14,12 @@ use crate::model::host::{Amounts, HostModel, OutOfRange, StepArrays, default_mod
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use errors::ValidationCase;
 use std::time::Instant;
-use strangers::uncalibrated_laws;
 use stripmine_kernels::Execution;
 use stripmine_kernels::backend::tape::Outlines;
 use stripmine_physics::method::lattice_md::{Part, Phase};
 use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::scene::Overrides;
+use uncalibrated_laws::uncalibrated_laws;
 
 /// Size of a validation.
 pub(crate) struct ValidationSize {

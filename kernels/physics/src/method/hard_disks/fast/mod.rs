@@ -21,10 +21,10 @@
 //! | events sorted as numbers of 128 bits | 1.00 | |
 //! | lists of 6, 7, 10 or 13 discs on average instead of 8 | 0.84 to 1.03 | |
 
-mod ahead;
-mod kept;
+mod checkpoint;
 mod leaving;
 mod lists;
+mod prefetch;
 mod queue;
 
 use crate::domain::BoxSide;
@@ -283,7 +283,7 @@ impl Fast {
             if time > until {
                 return Ok(None);
             }
-            if self.discs.len() > ahead::OUT_OF_REACH {
+            if self.discs.len() > prefetch::OUT_OF_REACH {
                 self.prefetch_next_events();
             }
             if time < self.time {

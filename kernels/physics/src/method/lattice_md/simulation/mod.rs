@@ -1,7 +1,7 @@
 //! Discs stepped by the vector programs, or by BP93's neighbour lists on the same state. Every violated precondition is detected in the step in which
 //! it occurs.
 
-mod account;
+mod accounting;
 mod names;
 mod saved;
 

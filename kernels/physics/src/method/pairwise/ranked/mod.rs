@@ -11,11 +11,11 @@
 //! discs from the band below are computed again by that rank, pair by pair, instead of being received as a sum. The assignment of bands changes no
 //! bit.
 
-mod dealing;
-mod dealt;
+mod distribution;
 mod first;
 mod layout;
 mod orders;
+mod shares;
 mod wire;
 mod worker;
 
@@ -24,8 +24,8 @@ use super::{CompiledDynamics, Dynamics, PairEngine, PairSystem, RemovableDiscs};
 use crate::method::{Clock, PhysicsFailure, rank_loss_failure};
 use crate::particles::Particles;
 use crate::ranks::{self, RankBackend};
-use dealt::RankedScene;
 use first::{FirstRank, RankThreads};
+use shares::RankedScene;
 use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;

@@ -3,7 +3,7 @@
 use super::PlanTarget;
 use super::findings::{MeasuredConfiguration, NO_TIME, SceneTrials, SimplerModelResult};
 use super::mean::TrialMean;
-use super::whole::MeasuredMean;
+use super::whole_runs::MeasuredMean;
 use crate::study::trial::MeanEstimate;
 use crate::study::{StudyCase, first_line};
 use stripmine_physics::method::{Prepared, SimplifiedModel, TranslatedScene};

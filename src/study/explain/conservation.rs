@@ -10,7 +10,7 @@ use super::lengths::{PlanCandidate, RunLength};
 use super::optimum::Optimum;
 use super::plan::{TIME_WITHIN, in_unit, overrides, own_rows, phases, prefer};
 use super::recommended::{Decision, ExpectedError, LikelyRange, OwnResult, RunPlan};
-use super::unreached::Unreached;
+use super::unreachable::Unreached;
 use crate::study::StudyCase;
 use stripmine_physics::number::significant;
 

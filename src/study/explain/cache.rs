@@ -1,9 +1,9 @@
 //! Cache of measurements, for this host and this version of the program: a repeated plan needs no trials.
 
 use super::PlanTarget;
-use super::alike::SceneFeatures;
 use super::findings::Findings;
-use super::seen::restore_overrides;
+use super::similarity::SceneFeatures;
+use super::trial_runs::restore_overrides;
 use crate::provenance::Provenance;
 use crate::results::{Journal, JournalError, JournalIdentity};
 use crate::study::StudyCase;

@@ -1,12 +1,12 @@
 //! Trials of a scene in order, and the plan that follows from them.
 
+use super::conservation::conserved_quantity_plan;
 use super::findings::{Findings, HALVINGS, MeasuredConfiguration, SHARES, SceneTrials};
-use super::keeping::conserved_quantity_plan;
 use super::mean::TrialMean;
 use super::plan::plan;
 use super::recommended::RunPlan;
 use super::timing::{OF_LIMIT, OF_ONE_THREAD, bounded};
-use super::unreached::Unreached;
+use super::unreachable::Unreached;
 use super::{ExplainError, PlanTarget};
 use crate::results::Journal;
 use crate::study::StudyCase;

@@ -1,6 +1,6 @@
 //! Values for `auto` settings of a scene, from cached measurements of it or of a similar scene on this host.
 
-use super::kept::{PlanCache, PlanCacheError};
+use super::cache::{PlanCache, PlanCacheError};
 use crate::study::StudyCase;
 use stripmine_physics::method::ChoiceEffect;
 use stripmine_physics::scene::{Key, KeyValue, Overrides};
