@@ -277,7 +277,7 @@ fn runs_are_tuned_by_measurements_of_similar_scenes() {
         let label = configuration["label"].as_str().unwrap();
         label.starts_with("gear6 f64") && label.ends_with("fast") && !configuration["cost"].is_null()
     };
-    let configurations = kept["findings"]["ways"].as_array().unwrap();
+    let configurations = kept["findings"]["configurations"].as_array().unwrap();
     let cheapest = configurations.iter().find(is_own).unwrap()["settings"].as_array().unwrap();
     let search = cheapest.iter().find(|it| it[0] == "search").unwrap()[1].as_str().unwrap();
     let (said, scene) = run("particles.count=150", &[]);

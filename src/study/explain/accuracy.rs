@@ -162,7 +162,7 @@ fn summary(scene: &str, target: &PlanTarget, findings: &Findings, curves: &[Erro
         .text("unit", |()| target.quantity.unit)
         .number("mean", 6, |()| mean.mean)
         .number("bar of the mean", 6, |()| mean.bar)
-        .text("configuration of the mean", |()| &findings.mean_way)
+        .text("configuration of the mean", |()| &findings.mean_configuration)
         .short("transient", |()| mean.transient)
         .short("time between independent samples", |()| mean.apart)
         .short("shortest wall time (s)", |()| first)

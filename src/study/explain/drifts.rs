@@ -101,7 +101,7 @@ impl SceneTrials<'_> {
         self.unless_stopped(Findings {
             configurations,
             mean: MeanEstimate::exactly(0.0),
-            mean_way: String::new(),
+            mean_configuration: String::new(),
             whole: None,
             starts_differ: None,
             start,
@@ -263,9 +263,9 @@ impl SceneTrials<'_> {
     /// Target error of a run: the requested one, or the scene's own once it is known.
     fn target_deviation(&self, configurations: &[MeasuredConfiguration], own: f64) -> f64 {
         let of_own = || {
-            let own_way =
+            let own_configuration =
                 configurations.iter().find(|configuration| configuration.label == self.case.own.label());
-            own_way.and_then(|configuration| configuration.drift.as_ref()?.at(own))
+            own_configuration.and_then(|configuration| configuration.drift.as_ref()?.at(own))
         };
         self.target.error.map(|width| in_unit(width, 1.0)).or_else(of_own).unwrap_or(WANTED)
     }

@@ -52,7 +52,7 @@ pub(crate) struct Findings {
     pub configurations: Vec<MeasuredConfiguration>,
     pub mean: MeanEstimate,
     /// Label of the configuration that measured the mean.
-    pub(crate) mean_way: String,
+    pub(crate) mean_configuration: String,
     /// The scene's own run time, where the quantity never becomes stationary and its mean over the whole run is the target (time).
     pub whole: Option<f64>,
     /// Difference between the means of another start and of this one, where it exceeds both error bars: a conserved quantity of the start does not

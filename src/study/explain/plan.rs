@@ -29,9 +29,9 @@ pub(crate) fn plan(
     origin: &str,
 ) -> Result<RunPlan, Unreached> {
     let mean = &findings.mean;
-    let own_way =
+    let own_configuration =
         findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
-    let own = own_way.and_then(|configuration| own(case, configuration, findings));
+    let own = own_configuration.and_then(|configuration| own(case, configuration, findings));
     let error = target.error.map(|width| in_unit(width, mean.mean));
     // Without a target error the plan matches the error of the scene's own values.
     let of_own = own.as_ref().map(|own| own.error.most).filter(|most| most.is_finite() && *most > 0.0);

@@ -46,6 +46,7 @@ pub(crate) struct RunPlan {
     pub scene: String,
     pub method: &'static str,
     /// Label of the configuration: its settings.
+    #[serde(rename = "way")]
     pub configuration: String,
     pub quantity: &'static str,
     /// Unit of the quantity, empty for a pure number.

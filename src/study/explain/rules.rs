@@ -43,7 +43,7 @@ fn findings(case: &StudyCase, configurations: &[ConfigurationCase<'_>], mean: Me
     Findings {
         configurations: configurations.iter().map(configuration).collect(),
         mean,
-        mean_way: String::new(),
+        mean_configuration: String::new(),
         whole: None,
         starts_differ: None,
         start: 0.0,
