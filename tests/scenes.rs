@@ -440,13 +440,20 @@ fn scene_verbs_print_presets_keys_and_checks() {
     // 1.36 times the limit of a dense packing, but below that of a single contact at the typical speed, which is √3 times larger.
     let borne = stripmine(&["scene", "check", "pipe-small", "--set", "integrator.dt=2e-4"]);
     assert!(borne.status.success() && !String::from_utf8_lossy(&borne.stderr).contains("warning"));
+    // SI scenes have symbols, and other scenes have numbers alone.
+    let has_symbols = |name: &str| {
+        let said = stripmine(&["scene", "check", name]);
+        let said = String::from_utf8_lossy(&said.stdout).into_owned();
+        ["3.24 × 0.088 m ", " m/s ", "of 1e-4 s, 2 s "].map(|symbol| said.contains(symbol))
+    };
+    assert_eq!([has_symbols("pipe-small"), has_symbols("two-discs")], [[true; 3], [false; 3]]);
     let refused = stripmine(&["scene", "check", "pipe", "--set", "law.friction=-1", "--json"]);
     assert_eq!(refused.status.code(), Some(3));
     let data: serde_json::Value = serde_json::from_slice(&refused.stdout).unwrap();
     assert_eq!(data["errors"][0]["reason"], "range");
     for (overrides, words) in [
-        (&["integrator.values=6"][..], &["1.96 times the limit 5.0894e-5 (dense packing)"][..]),
-        (&["integrator.dt=3e-4"], &["2.04 times the limit 1.4727e-4 (dense packing)"]),
+        (&["integrator.values=6"][..], &["1.96 times the limit 5.0894e-5 s (dense packing)"][..]),
+        (&["integrator.dt=3e-4"], &["2.04 times the limit 1.4727e-4 s (dense packing)"]),
         (&["law.shear_damping=0"], &["law.friction: "]),
         (&["law.friction=0"], &["law.shear_damping has no effect"]),
         (&["machine.precision=f32", "integrator.dt=4e-9"], &["single precision are rounded"]),
