@@ -150,7 +150,7 @@ pub fn collision_time(space: &Space, a: &FlyingDisc, b: &FlyingDisc, now: f64, h
     collision_times(Scalar::default(), space, &FlightState::of(a), &FlightState::of(b), now, horizon)
 }
 
-/// Implementation of [`meeting`] for a register of pairs.
+/// Implementation of [`collision_time`] for a register of pairs.
 #[inline(always)]
 fn collision_times<R: Registers<Lane = f64>>(
     registers: R,
@@ -173,23 +173,23 @@ fn collision_times<R: Registers<Lane = f64>>(
     let half = uniform(0.5);
     // Few pairs are nearer across a side. Behind a branch, the others need not wait for their correction, which is zero.
     if !registers.none(x.abs().less_than(half).and(y.abs().less_than(half)).not()) {
-        let nearest = |side: f64, distance: R::V, periods: R::V| {
+        let nearest = |side: f64, difference: R::V, periods: R::V| {
             // Rounds to the nearest whole number.
             let whole = (periods + periods).truncate() - periods.truncate();
-            distance - whole * uniform(side)
+            difference - whole * uniform(side)
         };
         dx = nearest(space.sides[0], dx, x);
         dy = nearest(space.sides[1], dy, y);
     }
-    let (mut reach, mut approach, mut speed) = (a.radius + b.radius, dx * u + dy * v, u * u + v * v);
+    let (mut reach, mut approach, mut speed_squared) = (a.radius + b.radius, dx * u + dy * v, u * u + v * v);
     let mut approaches = approach.less_than(zero);
     if let Some(growth) = space.growth {
         // The contact distance grows.
         let swelling = reach * uniform(growth.rate);
         reach = reach * (uniform(growth.from) + uniform(growth.rate) * from);
         approach = approach - reach * swelling;
-        speed = speed - swelling * swelling;
-        approaches = approach.less_than(zero).not().and(zero.less_equal(speed)).not();
+        speed_squared = speed_squared - swelling * swelling;
+        approaches = approach.less_than(zero).not().and(zero.less_equal(speed_squared)).not();
     }
     // Most pairs move apart.
     if registers.none(approaches) {
@@ -197,12 +197,12 @@ fn collision_times<R: Registers<Lane = f64>>(
     }
     // Discs that overlap because of rounding collide at once.
     let apart = (dx * dx + dy * dy - reach * reach).max(zero);
-    // The root below is at most the approach speed; for growing discs there is no such bound.
+    // The root below is at most the approach speed_squared; for growing discs there is no such bound.
     let soon = match space.growth {
         None => apart.less_equal(uniform(-2.0) * approach * (uniform(horizon) - from)),
         Some(_) => approaches,
     };
-    let discriminant = approach * approach - speed * apart;
+    let discriminant = approach * approach - speed_squared * apart;
     let meets = approaches.and(soon).and(zero.less_equal(discriminant));
     if registers.none(meets) {
         return never;

@@ -144,7 +144,7 @@ impl<X: Clone> AlignedColumn<X> {
         let (pages, start) = allocate_line(number, length * size_of::<X>());
         let start = start.cast::<X>();
         for at in 0..length {
-            // SAFETY: `room` has allocated the bytes of `length` elements, from the beginning of a line, for this column alone.
+            // SAFETY: `allocate_line` has allocated the bytes of `length` elements, from the beginning of a line, for this column alone.
             unsafe { start.add(at).write(value(at)) };
         }
         AlignedColumn { number, start, length, _pages: Some(pages) }

@@ -21,7 +21,7 @@ pub struct ObservationRequest {
 pub trait Env<const DIM: usize>: Copy {
     /// Vector of numbers.
     type V: Vector;
-    /// Location of a partner: a lattice offset, a gather index or a cyclic shift.
+    /// Handle of a partner: a mask neighbour, a listed disc, a cyclic shift or loaded values; `()` if the environment knows it.
     type Partner: Copy;
     /// True if a pair is visited once, so that the law gives the partner's share with [`Env::partner_sub`].
     const BOTH_PARTNERS: bool;
@@ -110,6 +110,6 @@ pub trait Law<const DIM: usize>: Clone {
 
     /// Loads the own particle.
     fn own<E: Env<DIM>>(&self, env: E) -> Self::Own<E::V>;
-    /// Evaluates the interaction of the own particle and its partner at `partner`.
+    /// Evaluates the interaction of the own particle and its partner, given by its handle.
     fn pair<E: Env<DIM>>(&self, env: E, partner: E::Partner, own: &Self::Own<E::V>);
 }

@@ -5,7 +5,7 @@
 //! Two of its lines, equations (4) to (6):
 //!
 //! ```text
-//! let [dx, dy] = env.displacement(own.position, place); // (5), (6)
+//! let [dx, dy] = env.displacement(own.position, partner); // (5), (6)
 //! let distance = (dx * dx + dy * dy).sqrt();            // (4)
 //! ```
 //!
@@ -19,7 +19,7 @@
 //!   contact_i times that ([`Printed`]).
 //! - (2) gives an empty cell the particle number 0. The paper does not define x(0): see below.
 //!
-//! Steps without an equation in the paper are in [`beside`]: wrapping of positions in a periodic box, images in a halo, the check
+//! Steps without an equation in the paper are in [`additions`]: wrapping of positions in a periodic box, images in a halo, the check
 //! that no disc was lost. They are counted separately.
 //!
 //! # Contents of an empty cell

@@ -202,12 +202,12 @@ impl<P: Precision> Env<2> for &ListEnv<'_, P> {
         self.field(field, self.own)
     }
     #[inline]
-    fn displacement(self, _: [P; 2], offset_number: ListPartner<P>) -> [P; 2] {
-        offset_number.displacement
+    fn displacement(self, _: [P; 2], partner: ListPartner<P>) -> [P; 2] {
+        partner.displacement
     }
     #[inline]
-    fn partner(self, field: ParticleField, offset_number: ListPartner<P>) -> P {
-        self.field(field, offset_number.disc)
+    fn partner(self, field: ParticleField, partner: ListPartner<P>) -> P {
+        self.field(field, partner.disc)
     }
     #[inline]
     fn uniform(self, value: f64) -> P {

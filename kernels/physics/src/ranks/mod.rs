@@ -4,7 +4,7 @@
 //! halo       to the ranks below and above, in a ring        particles near the edge          every step
 //! migrate    from each to each                              particles that change rank       occasionally
 //! gather     from each to the first                         sums, in the order of ranks      every step
-//! tell       from the first to all                          next moment, and when to stop    every step
+//! broadcast  from the first to all                          next moment, and when to stop    every step
 //! ```
 //!
 //! No sum is left to the transport. Gathered values are added in an order that depends on the scene alone, so a run has the same bits on any number

@@ -194,7 +194,7 @@ impl FunctionTable {
     }
 }
 
-/// FunctionTable in a file; `None` if the file does not exist.
+/// Table of a function in a file; `None` if the file does not exist.
 fn table(path: &Path, observable: &StructureObservable) -> Result<Option<FunctionTable>, FinishedError> {
     let damaged = |line, expected| FinishedError::Damaged { file: path.to_owned(), line, expected };
     let Some(bytes) = read(path, LONGEST)? else { return Ok(None) };

@@ -68,7 +68,7 @@ impl DiffusionEstimate {
     }
 
     /// Correlation time τ from the changes between octaves, the longest one; none if no change is significant.
-    fn memory(&self, whole: &AveragedFunction<'_>) -> Option<f64> {
+    fn correlation_time(&self, whole: &AveragedFunction<'_>) -> Option<f64> {
         let of = |&[quarter, half, last]: &[usize; 3]| {
             let later = |block: &[f64]| (self.of)(whole.over, block, [half, last]);
             let change = |block: &[f64]| later(block) - (self.of)(whole.over, block, [quarter, half]);
@@ -91,8 +91,10 @@ impl DiffusionEstimate {
 
     /// Missing part at the longest lag, relative to the estimate.
     fn bias(&self, whole: &AveragedFunction<'_>) -> f64 {
-        let (Some(memory), Some(last)) = (self.memory(whole), whole.over.last()) else { return 0.0 };
-        let missing = (self.missing)(last / memory);
+        let (Some(correlation_time), Some(last)) = (self.correlation_time(whole), whole.over.last()) else {
+            return 0.0;
+        };
+        let missing = (self.missing)(last / correlation_time);
         missing / (1.0 - missing)
     }
 
@@ -109,16 +111,16 @@ impl DiffusionEstimate {
                 4 * MOST_BLOCKS
             ));
         };
-        match self.memory(whole) {
-            Some(memory) if memory * self.long_enough > last => {
+        match self.correlation_time(whole) {
+            Some(correlation_time) if correlation_time * self.long_enough > last => {
                 // The longest lag is at least the length of the run over the number of blocks.
-                let enough =
-                    (MARGIN * MOST_BLOCKS as f64 * self.long_enough * memory).max(2.0 * whole.elapsed);
+                let enough = (MARGIN * MOST_BLOCKS as f64 * self.long_enough * correlation_time)
+                    .max(2.0 * whole.elapsed);
                 FunctionReliability::None(format!(
                     "no diffusion constant: motion is not diffusive yet at the longest lag, {}: velocities are correlated for about {}; extend the run \
                      until about time {} to resolve it",
                     significant(last, 2),
-                    significant(memory, 2),
+                    significant(correlation_time, 2),
                     significant(enough, 2)
                 ))
             }

@@ -110,11 +110,11 @@ fn shared_area(domain: &Domain, radii: [f64; 2], r: f64) -> f64 {
         true => domain.length(axis),
         false => domain.length(axis) - 2.0 * radius,
     };
-    let overlap = |axis: usize, distance: f64| {
+    let overlap = |axis: usize, component: f64| {
         let [a, b] = radii.map(|radius| room(axis, radius));
         match domain.is_periodic(axis) {
             true => a,
-            false => (0.5 * (a + b) - distance).min(a).min(b).max(0.0),
+            false => (0.5 * (a + b) - component).min(a).min(b).max(0.0),
         }
     };
     let at = |step: usize| {
@@ -162,15 +162,15 @@ impl ReachableGrid {
         for wall in particles.all().iter().filter(|disc| disc.kind == ParticleKind::Wall) {
             let reach = wall.radius + radius;
             let from = [0, 1].map(|axis| wall.position[axis] - self.origin[axis]);
-            let [low, high] = [-reach, reach].map(|distance| {
-                [0, 1].map(|axis| ((from[axis] + distance) / self.edges[axis]).floor() as i64)
-            });
+            let [low, high] = [-reach, reach]
+                .map(|offset| [0, 1].map(|axis| ((from[axis] + offset) / self.edges[axis]).floor() as i64));
             for row in low[1]..=high[1] {
                 for column in low[0]..=high[0] {
-                    let distances = [(0, column), (1, row)]
+                    let displacement = [(0, column), (1, row)]
                         .map(|(axis, at)| (at as f64 + 0.5) * self.edges[axis] - from[axis]);
                     if let Some(cell) = self.cell([column, row])
-                        && distances[0] * distances[0] + distances[1] * distances[1] < reach * reach
+                        && displacement[0] * displacement[0] + displacement[1] * displacement[1]
+                            < reach * reach
                     {
                         is_free[cell] = false;
                     }

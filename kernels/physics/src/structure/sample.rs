@@ -131,17 +131,17 @@ impl StructureSample {
 
 /// Hexatic order ψ6 of each disc, real and imaginary part: the mean of exp(6iθ) over the six nearest.
 pub fn hexatic_orders(setting: &StructureSetting, discs: &Particles) -> Vec<[f64; 2]> {
-    let mut look = StructureSample::new(*setting, discs, std::iter::empty());
-    look.states.store_grains(discs);
-    look.copy_states();
-    if look.discs.x.is_empty() {
+    let mut sample = StructureSample::new(*setting, discs, std::iter::empty());
+    sample.states.store_grains(discs);
+    sample.copy_states();
+    if sample.discs.x.is_empty() {
         return vec![];
     }
-    let reach = Neighbours::reach(setting, look.discs.x.len());
-    look.cells.sort(setting, &look.discs, reach);
-    look.neighbours.keeps_each = true;
-    look.neighbours.find(setting, &look.discs, &look.cells);
-    look.neighbours.each()
+    let reach = Neighbours::reach(setting, sample.discs.x.len());
+    sample.cells.sort(setting, &sample.discs, reach);
+    sample.neighbours.keeps_each = true;
+    sample.neighbours.find(setting, &sample.discs, &sample.cells);
+    sample.neighbours.each()
 }
 
 /// Values of an observable for some discs, and their weights in a mean.
@@ -150,9 +150,9 @@ pub fn sampled_values(
     setting: StructureSetting,
     discs: &Particles,
 ) -> [Vec<f64>; 2] {
-    let mut look = StructureSample::new(setting, discs, std::iter::once(observable));
-    if look.take_sample(|states| states.store_grains(discs)) {
-        look.values(observable)
+    let mut sample = StructureSample::new(setting, discs, std::iter::once(observable));
+    if sample.take_sample(|states| states.store_grains(discs)) {
+        sample.values(observable)
     } else {
         [vec![], vec![]]
     }

@@ -4,7 +4,7 @@ use super::instruction::{Instruction, RegisterKind};
 use crate::isa::Element;
 use std::collections::HashMap;
 
-/// Number of registers per file, in the order of [`File::ALL`].
+/// Number of registers per file, in the order of [`RegisterKind::ALL`].
 pub(super) type FileSizes = [usize; RegisterKind::ALL.len()];
 
 /// Renames the registers of straight-line code (each written once) to as few as possible.

@@ -219,13 +219,13 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             assert!(from.len() >= end);
             *to = from.as_mut_ptr();
         }
-        let copies_places = copies.is_some();
+        let copies_positions = copies.is_some();
         let mut none = [[]; 2];
         let PositionCopies { cells, positions, unit } = copies.unwrap_or_else(|| {
             let [x, y] = &mut none;
             PositionCopies { cells: &[], positions: [x, y], unit: 1.0 }
         });
-        assert!(!copies_places || cells.len() >= end, "cells has no entry for some moving disc");
+        assert!(!copies_positions || cells.len() >= end, "cells has no entry for some moving disc");
         let arrays = PassPointers {
             columns,
             sums,
@@ -234,7 +234,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             inverse: inverse.map(<[S]>::as_ptr),
             limit,
             cells: cells.as_ptr(),
-            copies_places,
+            copies_positions,
             positions: positions.map(<[f32]>::as_mut_ptr),
         };
         // Velocity in the units of the state at which a step has the greatest length allowed.
@@ -273,7 +273,7 @@ struct PassPointers<'a, S, P> {
     limit: DisplacementLimit<'a, S>,
     cells: *const u32,
     /// True if positions are copied to the lattice.
-    copies_places: bool,
+    copies_positions: bool,
     positions: [*mut f32; 2],
 }
 
@@ -351,8 +351,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 // SAFETY: where discs vary, Advance has checked that these columns have an entry for every moving disc.
                 unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
             });
-            let context = |position: Draws| {
-                let normal = if C::DRAWS == position { normals[freedom.min(1)] } else { nothing };
+            let context = |point: Draws| {
+                let normal = if C::DRAWS == point { normals[freedom.min(1)] } else { nothing };
                 motion.context(registers, inverse, normal)
             };
             let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
@@ -395,7 +395,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             list_discs(registers.bits(stays.not()), first, R::LANES, &mut self.passed.left);
             list_discs(registers.bits(creeps.not()), first, R::LANES, &mut self.passed.far);
         }
-        if !arrays.copies_places {
+        if !arrays.copies_positions {
             return;
         }
         let unit = uniform(self.unit);

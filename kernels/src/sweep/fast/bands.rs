@@ -37,7 +37,7 @@ use std::ops::Range;
 /// Rows that one thread sweeps, with its buffers.
 #[derive(Clone, Debug)]
 struct RowBand<F> {
-    /// Rows of the first stage, rows of the second, and rows whose extra pairs ([`Finder::find_beside`]) are found.
+    /// Rows of the first stage, rows of the second, and rows whose extra pairs ([`Finder::find_extra_pairs`]) are found.
     rows: [Vec<Range<usize>>; 3],
     /// True if its notes belong to this rank.
     is_own: bool,

@@ -112,7 +112,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     /// Replaces the contents of `found` by all pairs of a part. The parts of some rows, one after the other, give the pairs of
     /// [`find`](Self::find) in the same order.
     #[inline]
-    fn find_part(&self, _places: [&[S]; 2], _part: Range<usize>, _found: &mut Self::Found) {}
+    fn find_part(&self, _positions: [&[S]; 2], _part: Range<usize>, _found: &mut Self::Found) {}
 
     /// Appends pairs of some rows that the regular search does not find.
     #[inline]

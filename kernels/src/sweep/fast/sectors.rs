@@ -146,12 +146,12 @@ impl Sectors {
         }
         members.resize(end as usize, 0);
         // From the ends down, so that the ends become the starts.
-        let (ends, positions) = (shared(starts), shared(members));
+        let (ends, slots) = (shared(starts), shared(members));
         over_pieces(0..sector.len(), |discs| {
             inside(discs).for_each(|(disc, sector)| {
                 // Adding 2³² − 1 subtracts one.
-                let position = add(&ends[sector], u32::MAX) - 1;
-                positions[position as usize].store(disc as u32, Ordering::Relaxed);
+                let slot = add(&ends[sector], u32::MAX) - 1;
+                slots[slot as usize].store(disc as u32, Ordering::Relaxed);
             });
         });
         let (starts, mut rest) = (&*starts, members.as_mut_slice());

@@ -13,7 +13,7 @@ use std::marker::PhantomData;
 struct MaskNeighbour {
     /// Distance in elements from the own cell.
     shift: isize,
-    /// Vector from the own cell's centre to this one's (length); 0 for absolute positions.
+    /// Vector from the own cell's centre to this one's (length); used only if positions are relative to cells.
     displacement: [f64; 2],
 }
 

@@ -1,6 +1,6 @@
 //! Fall time under a constant acceleration.
 
-/// Returns the time to cover a distance `distance` (length, at least 0), with a speed and an acceleration towards its end; infinite if the
+/// Returns the time to cover a `distance` (length, at least 0), with a speed and an acceleration towards its end; infinite if the
 /// end is never reached.
 pub(super) fn fall(distance: f64, speed: f64, acceleration: f64) -> f64 {
     if acceleration == 0.0 {

@@ -87,15 +87,15 @@ impl LangevinSimulation {
             return Err(PhysicsFailure { kind: super::LOST, ..failure });
         }
         let clock = self.clock();
-        for &place in &unfit {
-            let Particle { id, .. } = self.method.start.all()[place];
-            self.method.losses.add(id, clock.steps, clock.time, standing.all()[place].planar_position());
+        for &index in &unfit {
+            let Particle { id, .. } = self.method.start.all()[index];
+            self.method.losses.add(id, clock.steps, clock.time, standing.all()[index].planar_position());
         }
         let (lost, most) = (self.method.losses.count(), self.method.checked.scene.most_lost);
         if lost > most || unfit.len() == self.method.start.len() {
             return Err(self.too_many(failure, lost, most));
         }
-        self.remove_particles(&|place, _| unfit.contains(&place)).map_err(|why| {
+        self.remove_particles(&|index, _| unfit.contains(&index)).map_err(|why| {
             PhysicsFailure::new(super::LOST, why, "this is a bug: please report it with the scene").at(clock)
         })?;
         self.state.settle()
@@ -139,7 +139,7 @@ impl LangevinSimulation {
     fn remove_particles(&mut self, leaves: &dyn Fn(usize, &Particle) -> bool) -> Result<(), String> {
         let all = self.method.start.all();
         let stays: Vec<bool> =
-            all.iter().enumerate().map(|(place, particle)| !leaves(place, particle)).collect();
+            all.iter().enumerate().map(|(index, particle)| !leaves(index, particle)).collect();
         let start = all.iter().zip(&stays).filter(|(_, stays)| **stays).map(|(particle, _)| *particle);
         let start = Particles::new(start.collect());
         let columns: Vec<(String, CheckpointColumn)> = self
@@ -182,8 +182,8 @@ impl LangevinSimulation {
     fn displacements(&self, standing: &Particles) -> Vec<[f64; 2]> {
         let crossed = self.state.elapsed().crossings.counts();
         let sides = self.method.checked.domain.lengths();
-        let of = |(place, (now, start)): (usize, (&Particle, &Particle))| {
-            let periods = crossed.get(place).copied().unwrap_or_default();
+        let of = |(index, (now, start)): (usize, (&Particle, &Particle))| {
+            let periods = crossed.get(index).copied().unwrap_or_default();
             [0, 1].map(|axis| now.position[axis] + periods[axis] * sides[axis] - start.position[axis])
         };
         standing.all().iter().zip(self.method.start.all()).enumerate().map(of).collect()
@@ -265,10 +265,10 @@ impl PerParticle for LangevinSimulation {
             return there;
         }
         let mut left = self.method.start.all().iter().zip(there).peekable();
-        let place = |particle: &Particle| {
-            left.next_if(|(still, _)| still.id == particle.id).map_or([f32::NAN; 3], |(_, place)| place)
+        let position = |particle: &Particle| {
+            left.next_if(|(still, _)| still.id == particle.id).map_or([f32::NAN; 3], |(_, position)| position)
         };
-        all.iter().map(place).collect()
+        all.iter().map(position).collect()
     }
 
     fn images(&self) -> Vec<[i32; 2]> {

@@ -80,7 +80,7 @@ impl BalanceTerms {
         BalanceTerms { path, start: internal_energy(first) }
     }
 
-    /// Returns the displacements of the grains.
+    /// Returns the path along which gravity does work.
     pub(super) fn gravity_path(&self) -> &GravityPath {
         &self.path
     }

@@ -212,9 +212,9 @@ impl GravityField {
                 });
             let mut square = [0.0; ORDERS];
             square[0] = self.softening * self.softening;
-            for displacement in &displacement {
+            for along in &displacement {
                 for k in 0..=order {
-                    square[k] += (0..=k).map(|i| displacement[i] * displacement[k - i]).sum::<f64>();
+                    square[k] += (0..=k).map(|i| along[i] * along[k - i]).sum::<f64>();
                 }
             }
             let cube = power(&square, -1.5, order);

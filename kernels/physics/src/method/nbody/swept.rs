@@ -67,7 +67,7 @@ impl<P: backend::Precision> PairSweep<P> {
     /// Visits the pairs of some bands.
     ///
     /// # Errors
-    /// As [`sum`](Sums::sum).
+    /// As [`sum`](ForceSums::sum).
     pub(super) fn visit_bands(
         &mut self,
         (position, velocity): (&StateColumns, Option<&StateColumns>),
@@ -91,7 +91,7 @@ impl<P: backend::Precision> PairSweep<P> {
     /// Adds up the sums of all bands, with or without the rates of the forces. Returns the energy.
     ///
     /// # Errors
-    /// As [`sum`](Sums::sum).
+    /// As [`sum`](ForceSums::sum).
     pub(super) fn finish(&mut self, has_rates: bool) -> Result<f64, ProgramError> {
         let energy = self.bodies.units.energy();
         let PairSweep { forces, rates, sums, .. } = self;

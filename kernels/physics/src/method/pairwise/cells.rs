@@ -30,14 +30,14 @@ pub(super) struct CellChange {
 
 impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Returns a position (length) from one relative to a cell's centre.
-    fn position_in_cell(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
+    fn absolute_from_relative(&self, cell: [usize; 2], place: [f64; 2]) -> [f64; 2] {
         let frame = self.search.cells().grid().frame;
         [0, 1].map(|axis| frame.origin[axis] + (cell[axis] as f64 + 0.5) * frame.edge[axis] + place[axis])
     }
 
     /// Returns the position (length) of a disc at `place` relative to its cell.
     pub(super) fn absolute_position(&self, disc: usize, place: [f64; 2]) -> [f64; 2] {
-        self.position_in_cell(self.search.cells().cell(disc).unwrap_or_default(), place)
+        self.absolute_from_relative(self.search.cells().cell(disc).unwrap_or_default(), place)
     }
 
     /// Returns the cell of a disc at a position (length), and the position relative to its centre.
@@ -157,7 +157,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         Culprit::in_plane(
             "disc",
             self.id(disc),
-            self.position_in_cell(at.cell, at.place),
+            self.absolute_from_relative(at.cell, at.place),
             self.velocity(disc),
         )
     }

@@ -55,7 +55,7 @@ pub(crate) struct PairEngine<S, P, Q> {
 }
 
 impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
-    /// Places `particles`. Their forces are unknown until [`compute_forces`](super::Stepping::compute_forces).
+    /// Places `particles`. Their forces are unknown until [`compute_forces`](super::SteppingDiscs::compute_forces).
     ///
     /// # Errors
     /// [`PhysicsFailure`] if a disc is outside the box, or in an occupied cell.

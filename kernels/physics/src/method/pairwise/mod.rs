@@ -1,7 +1,7 @@
 //! Fast engine for discs that interact in pairs and move step by step: law × search × integrator.
 //!
 //! A method provides a [`PairSystem`], which defines what moves and where; [`Dynamics`], which choose the pair law and the scheme; and a
-//! [`SearchSettings`](search::Search). Its step is then
+//! [`PairSearch`](search::PairSearch). Its step is then
 //!
 //! ```text
 //! advance    correct the previous step and predict the next one, in one pass over the discs    engine.rs

@@ -105,7 +105,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         }
     }
 
-    /// Restores columns that [`columns`](Self::columns) returned after `steps` steps. After an error the engine is unusable.
+    /// Restores columns that [`saved`](Self::saved) returned after `steps` steps. After an error the engine is unusable.
     ///
     /// # Errors
     /// Says why, if the columns are not those of these discs.
@@ -130,7 +130,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         Ok(())
     }
 
-    /// Restores what [`columns_of`](Self::columns_of) returned; `entries` maps each disc in memory to its entry, of `length` in all.
+    /// Restores columns that [`columns_of`](Self::columns_of) returned; `entries` maps each disc in memory to its entry, of `length` in all.
     ///
     /// # Errors
     /// As [`restore_state`](Self::restore_state).

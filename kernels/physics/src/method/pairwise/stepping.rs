@@ -47,7 +47,7 @@ pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
     /// Discs at the start.
     fn start(&self) -> &Particles;
 
-    /// Number of discs in occupied cells.
+    /// Number of discs in cells owned by another disc.
     fn shared_cells(&self) -> usize {
         0
     }

@@ -51,7 +51,7 @@ fn half_mask_offsets(half_width: usize) -> impl Iterator<Item = [isize; 2]> {
 /// Lane and offset of every code, in order.
 #[inline]
 pub(super) fn codes(half_width: usize) -> impl Iterator<Item = (usize, [isize; 2])> {
-    half_mask_offsets(half_width).flat_map(|position| (0..GROUP).map(move |lane| (lane, position)))
+    half_mask_offsets(half_width).flat_map(|offset| (0..GROUP).map(move |lane| (lane, offset)))
 }
 
 /// Tables that decode candidates.
@@ -76,7 +76,7 @@ impl<P: Precision> Codes<P> {
                 .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
                 .collect(),
             cell_offsets: [0, 1].map(|axis| {
-                all().map(|(_, position)| P::from_f64(position[axis] as f64 * frame.edge[axis])).collect()
+                all().map(|(_, offset)| P::from_f64(offset[axis] as f64 * frame.edge[axis])).collect()
             }),
         }
     }

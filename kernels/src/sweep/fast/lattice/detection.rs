@@ -33,7 +33,7 @@ use crate::sweep::fast::finder::{MARGIN, SearchCursor};
 use std::ops::Range;
 
 /// Offsets of the mask whose results share a word: 16 cells each.
-const PLACES: usize = 64 / GROUP;
+const OFFSETS: usize = 64 / GROUP;
 
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
 pub(super) struct DenseSearch<'a> {
@@ -61,7 +61,7 @@ impl RegisterTask<f32> for DenseSearch<'_> {
 /// Words for the results of a group: 12 or 24 offsets.
 #[inline]
 const fn word_count(half_width: usize) -> usize {
-    offset_count(half_width).div_ceil(PLACES)
+    offset_count(half_width).div_ceil(OFFSETS)
 }
 
 impl DenseSearch<'_> {
@@ -144,7 +144,7 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
         let row = |row: usize| own_y - registers.splat(edge[1] * row as f32);
         let rows = [own_y, row(1), row(2), row(3)];
         // Unrolled by hand: if the compiler leaves a loop, the words stay in memory, at five times the cost.
-        macro_rules! at_places {
+        macro_rules! at_offsets {
             ($($number:literal)*) => {$(
                 if $number < const { offset_count(H) } {
                     let [column, row] = const { half_mask_offset(H, $number) };
@@ -164,11 +164,11 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                     } else {
                         square.less_than(limit)
                     };
-                    near[$number / PLACES] |= registers.bits(touch) << (GROUP * ($number % PLACES) + part);
+                    near[$number / OFFSETS] |= registers.bits(touch) << (GROUP * ($number % OFFSETS) + part);
                 }
             )*};
         }
-        at_places!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
+        at_offsets!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23);
         part += R::LANES;
     }
     near

@@ -133,7 +133,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
             }
             for &(other, cell) in &shared[at + 1..] {
                 let offset = [0, 1].map(|axis| {
-                    let (count, cell_offset) =
+                    let (count, cells) =
                         (counts[axis] as isize, cell[axis] as isize - [column, row][axis] as isize);
                     if periodic[axis] && cell_offset.abs() > half {
                         cell_offset - cell_offset.signum() * count
@@ -141,7 +141,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
                         cell_offset
                     }
                 });
-                if offset.iter().all(|cell_offset| cell_offset.abs() <= half) {
+                if offset.iter().all(|cells| cell_offset.abs() <= half) {
                     found.push([disc, other], cell_offset(offset));
                 }
             }

@@ -19,11 +19,11 @@ const FAR: f32 = 1e18;
 /// Alignment numbers of the columns, which place them on cache lines of their own; the discs' columns have smaller numbers.
 const INDEX: usize = 32;
 const RADIUS: usize = 33;
-const PLACE: usize = 34;
+const POSITION: usize = 34;
 
 /// Positions of empty cells.
 fn empty_positions(cells: usize) -> [AlignedColumn<f32>; 2] {
-    [AlignedColumn::filled(PLACE, FAR, cells), AlignedColumn::zeros(PLACE + 1, cells)]
+    [AlignedColumn::filled(POSITION, FAR, cells), AlignedColumn::zeros(POSITION + 1, cells)]
 }
 
 /// Fraction of occupied cells below which comparing registers of cells does not pay: then each disc looks for its neighbours
@@ -79,7 +79,7 @@ impl Occupancy {
         // The last register of the last row may extend beyond the padded lattice.
         let length = shape.padded() + GROUP + 1;
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
-        let positions = if sparse { 0 } else { length };
+        let stored = if sparse { 0 } else { length };
         Occupancy {
             frame,
             half_width,
@@ -89,7 +89,7 @@ impl Occupancy {
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, length),
             sparse,
-            position: empty_positions(positions),
+            position: empty_positions(stored),
             radius: (vary && !sparse).then(|| AlignedColumn::zeros(RADIUS, length)),
             occupied: CellBits::new(&shape, half_width),
             images: shape

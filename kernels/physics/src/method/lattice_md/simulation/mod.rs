@@ -44,7 +44,7 @@ pub(super) struct LatticeMd<S, P> {
 }
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
-    /// Places `particles`. Their forces are unknown until [`compute_forces`](Stepping::compute_forces).
+    /// Places `particles`. Their forces are unknown until [`compute_forces`](SteppingDiscs::compute_forces).
     pub(super) fn new(
         model: GranularModel,
         contacts: ContactSearch,

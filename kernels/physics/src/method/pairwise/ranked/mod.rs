@@ -30,7 +30,7 @@ use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 
-/// Starts stepping discs on as many ranks as [`ranks::crew`] has: with an [`PairEngine`] alone, or with several.
+/// Starts stepping discs on as many ranks as [`ranks::current_backend`] has: with a [`PairEngine`] alone, or with several.
 ///
 /// # Errors
 /// As [`PairEngine::new`], or if the scene has fewer bands than there are ranks.

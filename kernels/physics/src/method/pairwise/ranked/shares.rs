@@ -96,7 +96,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P> + 'static> RankedScene<S, P
 /// Reports the start of a part to the first rank and follows its orders.
 ///
 /// # Errors
-/// As [`serve`].
+/// As [`execute_orders`].
 fn serve_one(part: PartStart) -> Result<(), RankError> {
     match part {
         Ok(part) => {

@@ -274,14 +274,14 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         ForcesReport { distributed: Ok(()), failure, bands: met.of_bands, deep }
     }
 
-    /// Sends some values of each disc that this rank reports.
+    /// Packs some values of each disc that this rank reports.
     pub(super) fn each_own<const N: usize>(&self, of: impl Fn(usize) -> [f64; N]) -> Parcel {
         let discs = self.reported_discs();
         let numbers = Parcel::of_numbers(discs.iter().flat_map(|&disc| of(disc as usize)));
         Parcel::of(&(self.numbers(&discs), numbers))
     }
 
-    /// Sends position, angle and their rates of each disc at the end of the step.
+    /// Packs position, angle and their rates of each disc at the end of the step.
     pub(super) fn standing(&self) -> Parcel {
         let engine = &self.engine;
         let columns = [0, 1, 2].map(|freedom| {
@@ -296,7 +296,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
         })
     }
 
-    /// Sends the entries of a column of the state.
+    /// Packs the entries of a column of the state.
     pub(super) fn column(&self, place: usize) -> Parcel {
         let (discs, source) = (self.reported_discs(), self.engine.sources()[place]);
         let entries = entries(&self.engine.column_of(source, &discs));
