@@ -127,7 +127,7 @@ mod limits {
     pub(super) fn prepare() {}
 
     #[inline]
-    pub(super) fn given(block: *mut u8, _: usize) -> *mut u8 {
+    pub(super) fn block_or_end(block: *mut u8, _: usize) -> *mut u8 {
         block
     }
 }

@@ -61,7 +61,7 @@ fn measurements_are_cached_per_host_and_removable() {
     assert!(found["origin"].as_str().unwrap().contains(" s of trials on "));
     // Another error needs no new trials.
     let again = plan(&explain(folder, &[&GAS[..3], &["--estimate", "--error", "1%", "--json"]].concat()));
-    assert!(again["origin"].as_str().unwrap().starts_with("kept from"), "{again:#}");
+    assert!(again["origin"].as_str().unwrap().starts_with("cached on"), "{again:#}");
     assert_eq!(again["mean"], found["mean"]);
     let ratio = again["time"].as_f64().unwrap() / found["time"].as_f64().unwrap();
     assert!(ratio > 1.5 && ratio < 4.01, "{ratio}");
@@ -185,7 +185,7 @@ fn constant_quantities_are_cached() {
         let asked = [scene, "--of", quantity, "--json"];
         let found = plan(&explain(folder, &[&asked[..], &["--seconds", "1"]].concat()));
         let again = plan(&explain(folder, &[&asked[..], &["--estimate"]].concat()));
-        assert!(again["origin"].as_str().unwrap().starts_with("kept from"), "{again:#}");
+        assert!(again["origin"].as_str().unwrap().starts_with("cached on"), "{again:#}");
         assert_eq!(again["mean"], found["mean"]);
         assert!(
             again["time"].as_f64().unwrap() > 0.0 && again["expected"]["most"].as_f64().is_some(),

@@ -1,4 +1,4 @@
-//! Density waves in the pipe, compared with earlier trials (`lattice-md.md`, "The application"): flow, depth, Fano
+//! Density waves in the pipe, compared with earlier trials (`pages/pipe-small.md`): flow, depth, Fano
 //! factor, with error bars over seeds.
 //!
 //! With `STRIPMINE_REPORTS` set, writes the numbers to `reports/physics/pipe_small.md`.

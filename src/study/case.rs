@@ -37,7 +37,7 @@ impl StudyCase {
     /// Parses a scene from its text, under a name, with overrides.
     ///
     /// # Errors
-    /// [`SceneErrors`] as for [`load`](Case::load).
+    /// [`SceneErrors`] as for [`load`](StudyCase::load).
     pub(crate) fn parse(
         what: &str,
         text: &str,

@@ -44,12 +44,12 @@ fn two_rows(prepared: &Prepared, what: &str) -> bool {
         simulation.advance(&until, &AtomicBool::new(false)).is_ok() && !simulation.row().is_empty()
     };
     let all = takes(simulation.as_mut()) && takes(simulation.as_mut());
-    comes_to_an_end(prepared, simulation.clock(), what);
+    check_run_can_finish(prepared, simulation.clock(), what);
     all
 }
 
-/// Checks that any machine can finish the rest of a run, as far as its first rows tell.
-fn comes_to_an_end(prepared: &Prepared, now: Clock, what: &str) {
+/// Checks that any machine can finish the rest of a run, as far as its first rows show.
+fn check_run_can_finish(prepared: &Prepared, now: Clock, what: &str) {
     let schedule = prepared.schedule;
     let time = match schedule.until {
         Until::Time(time) => {

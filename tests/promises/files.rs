@@ -54,14 +54,14 @@ impl GsdFrame {
     /// The mean square displacement since another frame, computed from images as other programs do.
     pub fn displacement_since(&self, start: &GsdFrame) -> Option<f64> {
         let images = self.images.as_ref().filter(|_| self.ids == start.ids)?;
-        let configuration = |(number, image): (usize, &[i32; 3])| -> f64 {
+        let square_displacement = |(number, image): (usize, &[i32; 3])| -> f64 {
             let along = |axis: usize| {
                 let moved = self.double[number][axis] - start.double[number][axis];
                 moved + f64::from(image[axis]) * self.exact_sides[axis]
             };
             along(0).powi(2) + along(1).powi(2)
         };
-        Some(images.iter().enumerate().map(configuration).sum::<f64>() / images.len() as f64)
+        Some(images.iter().enumerate().map(square_displacement).sum::<f64>() / images.len() as f64)
     }
 
     /// Checks that positions in single precision equal those in double precision and are inside the box.

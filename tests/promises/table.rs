@@ -153,9 +153,9 @@ impl Case {
         let mut held = Held { runs: 1, sessions: 1, ..Held::default() };
         self.files(&prepared, &path, &mut held);
         let mut stream = Stream::new(self.label().len() as u64, Of::Test, 0);
-        let configurations = if extent == Extent::Full { 20 } else { 1 };
-        for configuration in 0..configurations {
-            let parts = folder.path().join(format!("parts{configuration}"));
+        let repeats = if extent == Extent::Full { 20 } else { 1 };
+        for repeat in 0..repeats {
+            let parts = folder.path().join(format!("parts{repeat}"));
             held.sessions += self.interrupted(&prepared, &parts, words, &mut stream);
             self.same("interrupted", &path, &parts);
             held.runs += 1;
@@ -249,13 +249,13 @@ impl Case {
     }
 
     /// Checks that files and summary of both runs are equal.
-    fn same(&self, configuration: &str, whole: &Path, parts: &Path) {
+    fn same(&self, treatment: &str, whole: &Path, parts: &Path) {
         for name in files() {
             let [one, other] = [whole, parts].map(|folder| fs::read(folder.join(name)).ok());
-            assert!(one == other, "{}: {name} differs, {configuration}", self.label());
+            assert!(one == other, "{}: {name} differs, {treatment}", self.label());
         }
         let [one, other] = [whole, parts].map(|folder| of_physics(summary(folder)));
-        assert_eq!(one, other, "{}: the summary differs, {configuration}", self.label());
+        assert_eq!(one, other, "{}: the summary differs, {treatment}", self.label());
     }
 
     /// Checks that a run has as many frames and rows as its scene states, and that the last ones show the end.

@@ -17,7 +17,7 @@ use stripmine_physics::quoted;
 use stripmine_physics::reported::{ErrorClass, FilePlace, Reported};
 
 /// Most positions in a film: at two bytes per coordinate and at most two per shade, in base 64, less than 20 million bytes.
-const PLACES: usize = 2_400_000;
+const MOST_POSITIONS: usize = 2_400_000;
 /// Most frames of a film; more take minutes to watch.
 const FRAMES: usize = 1500;
 /// Largest displacement of a fixed wall disc, in radii; the rest is rounding.
@@ -156,7 +156,7 @@ impl FilmFrames {
                 }
             }
             self.kept.push((frame.time, seen));
-            if self.kept.len() > (PLACES / cast.particles.len().max(1)).clamp(2, FRAMES) {
+            if self.kept.len() > (MOST_POSITIONS / cast.particles.len().max(1)).clamp(2, FRAMES) {
                 self.stride = 2 * self.stride.max(1);
                 let mut number = 0..;
                 self.kept.retain(|_| number.next().is_some_and(|number: usize| number.is_multiple_of(2)));

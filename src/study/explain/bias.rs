@@ -64,23 +64,23 @@ pub(super) struct StepDifference {
 }
 
 impl StepDifference {
-    /// Estimates the difference of case `place` from a window and the one before, for a quantity with a memory (time) and for the mean over a run
+    /// Estimates the difference of case `case` from a window and the one before, for a quantity with a memory (time) and for the mean over a run
     /// that shows part `of_run` of the steady-state bias.
     pub(super) fn of(
         [before, window]: [&Window; 2],
-        place: usize,
+        case: usize,
         (memory, of_run): (f64, f64),
         (step, reference): (f64, f64),
     ) -> StepDifference {
         let parts = [window, before].map(|it| shown_part(it.time, memory));
-        let pairs = window.differences[place].iter().zip(&before.differences[place]);
+        let pairs = window.differences[case].iter().zip(&before.differences[case]);
         let told: Vec<f64> = pairs
             .map(|(now, before)| {
                 let [bias, at_once] = steady_bias([*now, *before], parts);
                 of_run * bias + (1.0 - of_run) * at_once
             })
             .collect();
-        let shown = &window.differences[place];
+        let shown = &window.differences[case];
         StepDifference {
             step,
             reference,

@@ -147,7 +147,7 @@ impl PlanCache {
         }
         restore_overrides(&mut file.findings.configurations, case);
         let taken = significant(file.taken, 2);
-        let origin = format!("kept from {} ({taken} s of trials on {})", file.moment, file.host);
+        let origin = format!("cached on {} ({taken} s of trials on {})", file.moment, file.host);
         Ok(Some((file.findings, origin)))
     }
 

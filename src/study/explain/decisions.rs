@@ -204,7 +204,7 @@ pub(super) fn left_out(findings: &Findings, wanted: f64, mean: f64) -> Vec<Simpl
 }
 
 /// Usual precision and the lower one it is compared with.
-const DIGITS: [&str; 2] = ["f64", "f32"];
+const PRECISIONS: [&str; 2] = ["f64", "f32"];
 
 /// Compares single with double precision by the cheapest configuration timed in both.
 fn precision_comparison(findings: &Findings) -> Option<SimplerModelReport> {
@@ -213,7 +213,7 @@ fn precision_comparison(findings: &Findings) -> Option<SimplerModelReport> {
     };
     let with = |half: &MeasuredConfiguration| {
         let is_twin = |other: &&MeasuredConfiguration| {
-            of(other, AXIS).as_deref() == Some(DIGITS[0])
+            of(other, AXIS).as_deref() == Some(PRECISIONS[0])
                 && other.settings.iter().all(|it| it.0 == AXIS || half.settings.contains(it))
         };
         findings.configurations.iter().find(is_twin)
@@ -221,7 +221,7 @@ fn precision_comparison(findings: &Findings) -> Option<SimplerModelReport> {
     let mut halves = findings
         .configurations
         .iter()
-        .filter(|configuration| of(configuration, AXIS).as_deref() == Some(DIGITS[1]));
+        .filter(|configuration| of(configuration, AXIS).as_deref() == Some(PRECISIONS[1]));
     let (half, cost) = halves.find_map(|half| {
         let full = with(half)?;
         // The steps of the two may differ.

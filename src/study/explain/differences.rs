@@ -41,7 +41,7 @@ enum PairingFailure {
     /// Too few states to start from.
     FewStates,
     /// Two windows of all cases exceed the available time.
-    TooDear,
+    TooExpensive,
     /// Index of the case that failed, and the reason.
     Broken(usize, String),
 }
@@ -63,10 +63,10 @@ impl SceneTrials<'_> {
             match self.paired(&cases, mean, seconds) {
                 Err(PairingFailure::FewStates) => break,
                 // The first short runs have little time.
-                Err(PairingFailure::TooDear) if seconds < all => seconds = all,
+                Err(PairingFailure::TooExpensive) if seconds < all => seconds = all,
                 // The best configuration and the scene's own are the fewest that can be compared.
-                Err(PairingFailure::TooDear) if most > 1 => most -= 1,
-                Err(PairingFailure::TooDear) => break,
+                Err(PairingFailure::TooExpensive) if most > 1 => most -= 1,
+                Err(PairingFailure::TooExpensive) => break,
                 Err(PairingFailure::Broken(at, why)) => {
                     // The reference has the shortest step of all: its configuration is unusable.
                     let Some(first) = at.checked_sub(1).map(|at| cases.firsts[at / STEPS.len()]) else {
@@ -212,7 +212,7 @@ impl SceneTrials<'_> {
         let seconds = seconds.min(self.left());
         let fitting = seconds * rayon::current_num_threads() as f64 / (mean.step_cost * two_windows as f64);
         if fitting < 0.5 * FEWEST as f64 {
-            return Err(PairingFailure::TooDear);
+            return Err(PairingFailure::TooExpensive);
         }
         let starts = (fitting as usize).clamp(FEWEST, mean.states.len());
         let begin = |case: usize, start: usize| {

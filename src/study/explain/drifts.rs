@@ -210,7 +210,7 @@ impl SceneTrials<'_> {
         };
         let best = configurations.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
         // Among configurations that differ in cost alone, only the cheapest is tried.
-        let is_dearer = |configuration: &MeasuredConfiguration, other: &MeasuredConfiguration| {
+        let is_more_expensive = |configuration: &MeasuredConfiguration, other: &MeasuredConfiguration| {
             let [own, others] = [configuration, other].map(|it| self.choice(it));
             let is_alike = own.agrees_on(&others, ChoiceEffect::Order)
                 && own.agrees_on(&others, ChoiceEffect::Precision);
@@ -221,7 +221,7 @@ impl SceneTrials<'_> {
         };
         let is_cheapest = |configuration: &MeasuredConfiguration| {
             configuration.drift.is_some()
-                || !configurations.iter().any(|other| is_dearer(configuration, other))
+                || !configurations.iter().any(|other| is_more_expensive(configuration, other))
         };
         let is_tried = |configuration: &MeasuredConfiguration| {
             configuration.dropped.is_none() && is_cheapest(configuration)

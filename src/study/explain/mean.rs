@@ -74,7 +74,7 @@ impl SceneTrials<'_> {
                 let tried = configurations.iter().map(|configuration| {
                     (configuration.label.clone(), configuration.dropped.clone().unwrap_or_default())
                 });
-                return Err(ExplainError::EveryWayFails(tried.collect()));
+                return Err(ExplainError::EveryConfigurationFails(tried.collect()));
             }
             if !is_scout {
                 seconds = self.extended_to_end(&best, seconds);
@@ -241,7 +241,7 @@ impl SceneTrials<'_> {
         let time = match sample.outcome {
             AverageOutcome::TooShort { enough_at, .. } => enough_at,
             // The end of the change is unknown before the end of the scene's own run.
-            AverageOutcome::Changing { .. } if !sample.comes_beyond_end => {
+            AverageOutcome::Changing { .. } if !sample.reaches_scene_end => {
                 self.case.duration()?.max(LONGER * sample.time)
             }
             // Whole runs have means of their own.
@@ -292,7 +292,7 @@ fn trials_for(seconds: f64) -> f64 {
 
 /// True if a quantity still changes beyond the end of the scene's own run, or has died out by then: a later mean would differ.
 fn is_changing_beyond_end(sample: &TrialSample) -> bool {
-    if !sample.comes_beyond_end {
+    if !sample.reaches_scene_end {
         return false;
     }
     let largest = sample.series.iter().fold(0.0_f64, |largest, [_, value]| largest.max(value.abs()));

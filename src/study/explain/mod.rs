@@ -88,7 +88,7 @@ pub(crate) enum ExplainError {
         "every trial of the scene fails; tried:{}\n  help: lower integrator.dt, or fix what the failures name",
         .0.iter().map(|(what, why)| format!("\n  {what}: {why}")).collect::<String>()
     )]
-    EveryWayFails(Vec<(String, String)>),
+    EveryConfigurationFails(Vec<(String, String)>),
     /// The quantity does not become stationary.
     #[error(
         "{quantity} did not become stationary during the trials: {why}\n  help: {}; or choose another quantity with --of",

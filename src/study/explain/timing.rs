@@ -12,7 +12,7 @@ pub(super) const OF_LIMIT: f64 = 0.9;
 /// Longest step where theory has no limit, in steps of the scene.
 const TIMES_OWN: f64 = 4.0;
 /// Cost, relative to the cheapest, above which a configuration is dropped.
-const DEAR: f64 = 5.0;
+const EXPENSIVE: f64 = 5.0;
 /// Most rounds of a race, and the first round in which times may tie.
 const ROUNDS: usize = 5;
 const TIE_FROM: usize = 3;
@@ -49,7 +49,7 @@ impl SceneTrials<'_> {
             let tried = configurations
                 .into_iter()
                 .map(|configuration| (configuration.label, configuration.dropped.unwrap_or_default()));
-            return Err(ExplainError::EveryWayFails(tried.collect()));
+            return Err(ExplainError::EveryConfigurationFails(tried.collect()));
         };
         let best = all.iter().find(|choice| choice.label() == best).unwrap_or(own);
         let others: Vec<&SettingChoice> = all
@@ -172,10 +172,10 @@ impl Race {
         self.racing.sort_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
         let half = self.racing.len().div_ceil(2);
         let best = self.racing.first().map_or(f64::INFINITY, |(_, times)| least(times));
-        let mut place = 0;
+        let mut rank = 0;
         self.racing.retain(|(_, times)| {
-            place += 1;
-            place <= half || least(times) < LEAD * best
+            rank += 1;
+            rank <= half || least(times) < LEAD * best
         });
     }
 
@@ -211,12 +211,12 @@ fn untimed_configuration(choice: &SettingChoice) -> MeasuredConfiguration {
     }
 }
 
-/// Drops configurations that cost more than `DEAR` times the cheapest: their results are the same.
+/// Drops configurations that cost more than `EXPENSIVE` times the cheapest: their results are the same.
 fn drop_expensive(configurations: &mut [MeasuredConfiguration]) {
     let costs: Vec<f64> = configurations.iter().filter_map(|configuration| configuration.cost).collect();
     let cheapest = least(&costs);
     for configuration in configurations.iter_mut() {
-        if let Some(cost) = configuration.cost.filter(|cost| *cost > DEAR * cheapest) {
+        if let Some(cost) = configuration.cost.filter(|cost| *cost > EXPENSIVE * cheapest) {
             configuration.dropped =
                 Some(format!("costs {} times the cheapest", significant(cost / cheapest, 2)));
         }

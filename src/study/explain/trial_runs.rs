@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use stripmine_physics::method::StepLimit;
 
 /// Shares of the trial time where simpler models are the goal.
-const OF_TWINS: [f64; 5] = [0.1, 0.25, 0.12, 0.48, 0.05];
+const FOR_SIMPLER_MODELS: [f64; 5] = [0.1, 0.25, 0.12, 0.48, 0.05];
 /// Printed steps are rounded, and may exceed a limit by this part.
 const ROUNDING: f64 = 1e-3;
 
@@ -113,17 +113,17 @@ pub(crate) fn measure_findings(
     measure_with_shares(SHARES, case, target, seconds, trial, (progress, journal))
 }
 
-/// Measures a scene as [`seen`] does, with most of the time for its simpler models.
+/// Measures a scene as [`measure_findings`] does, with most of the time for its simpler models.
 ///
 /// # Errors
-/// As [`seen`].
+/// As [`measure_findings`].
 pub(super) fn measure_with_simpler_models(
     case: &StudyCase,
     target: &PlanTarget,
     seconds: f64,
     trial: TrialControl<'_>,
 ) -> Result<Findings, ExplainError> {
-    measure_with_shares(OF_TWINS, case, target, seconds, trial, (&|_| {}, &Journal::none()))
+    measure_with_shares(FOR_SIMPLER_MODELS, case, target, seconds, trial, (&|_| {}, &Journal::none()))
 }
 
 fn measure_with_shares(

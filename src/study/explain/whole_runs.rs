@@ -182,11 +182,10 @@ mod tests {
         let [_, largest] = before.radii().unwrap();
         for (number, start) in starts.iter().enumerate() {
             for (at, (own, now)) in before.all().iter().zip(start.all()).enumerate() {
-                let configuration =
-                    prepared.domain.displacement(now.planar_position(), own.planar_position());
+                let displacement = prepared.domain.displacement(now.planar_position(), own.planar_position());
                 let expected = if at < before.grain_count() { DISPLACED * largest } else { 0.0 };
                 assert!(
-                    (configuration[0].hypot(configuration[1]) - expected).abs() < 1e-3 * DISPLACED * largest,
+                    (displacement[0].hypot(displacement[1]) - expected).abs() < 1e-3 * DISPLACED * largest,
                     "{number}, {at}"
                 );
             }

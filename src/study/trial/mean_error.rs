@@ -27,7 +27,7 @@ pub(crate) struct MeanEstimate {
     /// Waves of the error bar: its degrees of freedom.
     #[serde(with = "any_number")]
     pub waves: f64,
-    /// Square of the error bar of a mean over one unit of time, with rows spaced by [`sampling_strides`](Self::sampling_strides).
+    /// Square of the error bar of a mean over one unit of time, with rows spaced by [`every`](Self::every).
     #[serde(with = "any_number")]
     pub square: f64,
     /// Time between rows (time); 0 where it does not matter.
@@ -205,8 +205,8 @@ mod tests {
         );
         let quick = known(0.0, Some(FREE));
         assert!(quick.every == 1.0 && near(quick.square, 4.0) && near(quick.single, 4.0), "{quick:?}");
-        let dear = known(0.0, Some(RowPace { row: 80.0, ..FREE }));
-        assert!(dear.every == 8.0 && near(dear.square, 32.0), "{dear:?}");
+        let expensive = known(0.0, Some(RowPace { row: 80.0, ..FREE }));
+        assert!(expensive.every == 8.0 && near(expensive.square, 32.0), "{expensive:?}");
         // Rows that lose nothing may have any spacing.
         let means = known(0.0, None);
         assert!(means.every == 0.0 && near(means.square, 4.0) && means.single == 0.0, "{means:?}");

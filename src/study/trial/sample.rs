@@ -43,8 +43,8 @@ pub(crate) struct TrialSample {
     pub time: f64,
     /// Mean of the quantity, or the reason why there is none.
     pub outcome: AverageOutcome,
-    /// Set if it went beyond the end of the scene's own run.
-    pub(crate) comes_beyond_end: bool,
+    /// Set if it reached the end of the scene's own run.
+    pub(crate) reaches_scene_end: bool,
     pub warnings: Vec<RunWarning>,
     /// Time series of the quantity: end of each stretch (time), and its value.
     pub(crate) series: Vec<[f64; 2]>,
@@ -184,7 +184,7 @@ impl TrialControl<'_> {
     /// Runs a scene and observes a quantity.
     ///
     /// # Errors
-    /// [`CommandFailure`] if it fails.
+    /// [`PhysicsFailure`] if it fails.
     pub(crate) fn sample(
         &self,
         prepared: &Prepared,
@@ -256,7 +256,7 @@ impl TrialControl<'_> {
         }
         let (gone, spent) = if warm.0 > 0.0 { warm } else { all };
         let (time, series, phases) = (simulation.clock().time, rows.time_series(place), phases(simulation));
-        let comes_beyond_end = prepared.schedule.until.has_been_reached(&simulation.clock());
+        let reaches_scene_end = prepared.schedule.until.has_been_reached(&simulation.clock());
         let warnings = simulation.warnings();
         let near = spent / gone;
         let [cost, row] = match of_stretch {
@@ -270,7 +270,7 @@ impl TrialControl<'_> {
             seconds: self.watch.now() - begun,
             time,
             outcome: Average::of(&rows, place).outcome,
-            comes_beyond_end,
+            reaches_scene_end,
             warnings,
             series,
             phases,
@@ -354,7 +354,7 @@ impl TrialControl<'_> {
     /// Times a scene without rows.
     ///
     /// # Errors
-    /// [`CommandFailure`] if it fails.
+    /// [`PhysicsFailure`] if it fails.
     pub(crate) fn timed(&self, prepared: &Prepared, seconds: f64) -> Result<UnitCost, PhysicsFailure> {
         const STRETCHES: u32 = 4;
         let mut simulation = prepared.start(StartPurpose::Run)?;

@@ -123,11 +123,11 @@ fn of_step(
 
 /// The scene's own configuration in the precision of the reference: a small disturbance must not be lost in rounding.
 pub(crate) fn own_in_full_precision(subject: &Subject) -> SettingChoice {
-    let is_of_digits = |name: &str| {
+    let is_of_precision = |name: &str| {
         subject.entry.axes.iter().any(|axis| axis.name == name && axis.decides == ChoiceEffect::Precision)
     };
     let [first, _] = subject.trials.references;
-    subject.own.with(&first.iter().copied().filter(|(axis, _)| is_of_digits(axis)).collect::<Vec<_>>())
+    subject.own.with(&first.iter().copied().filter(|(axis, _)| is_of_precision(axis)).collect::<Vec<_>>())
 }
 
 fn observed(

@@ -174,10 +174,10 @@ fn direct_acceleration(all: &PointMasses, body: usize, softening: f64, is_rounde
     let seen = |value: f64| if is_rounded { f64::from(value as f32) } else { value };
     let mut sums = [[0.0_f64; 2]; 3];
     for other in (0..all.len()).filter(|&other| other != body) {
-        let configuration = [0, 1, 2].map(|axis| all.position[axis][other] - all.position[axis][body]);
-        let square = configuration.iter().map(|part| part * part).sum::<f64>() + seen(softening).powi(2);
+        let displacement = [0, 1, 2].map(|axis| all.position[axis][other] - all.position[axis][body]);
+        let square = displacement.iter().map(|part| part * part).sum::<f64>() + seen(softening).powi(2);
         let pull = seen(all.mass[other]) / (square * square.sqrt());
-        for (sum, part) in sums.iter_mut().zip(configuration) {
+        for (sum, part) in sums.iter_mut().zip(displacement) {
             let [before, lost] = *sum;
             let term = pull * part;
             let after = before + term;

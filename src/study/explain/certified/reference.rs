@@ -66,7 +66,7 @@ impl StartEnsemble<'_> {
         overrides: &Overrides,
         error: Width,
         seconds: f64,
-        bears_warnings: bool,
+        accepts_warnings: bool,
     ) -> Result<MeanEstimate, String> {
         let begun = self.trial.watch.now();
         let mut samples: Vec<TrialSample> = vec![];
@@ -82,7 +82,7 @@ impl StartEnsemble<'_> {
             });
             for sample in more.map_err(|error| error.to_string())? {
                 let sample = sample?;
-                if !bears_warnings && !sample.warnings.is_empty() {
+                if !accepts_warnings && !sample.warnings.is_empty() {
                     return Err(format!("warning: {}", sample.warning_text()));
                 }
                 samples.push(sample);

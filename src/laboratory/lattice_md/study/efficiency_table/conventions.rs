@@ -89,24 +89,24 @@ fn describe_differences(counted: &&ConventionCounts) -> String {
 /// Recorded operations of the printed program.
 struct PrintedOperations {
     index: Vec<(&'static str, OpCounts)>,
-    places: u64,
-    all_places: OpCounts,
-    one_place: OpCounts,
+    offsets: u64,
+    all_offsets: OpCounts,
+    one_offset: OpCounts,
     gravity: bool,
 }
 
 impl PrintedOperations {
     fn of(question: &TableScene) -> Result<PrintedOperations, TableSceneError> {
         let mut model = scene_model(question)?;
-        let (all, places) = (ledger(&programs_of_step(question)?.0), model.mask.offsets().len() as u64);
+        let (all, offsets) = (ledger(&programs_of_step(question)?.0), model.mask.offsets().len() as u64);
         model.mask = Mask::single_offset();
         let one = ledger(&programs(&model, Precision::F64));
         let index = all.entries().iter().filter(|entry| entry.part == Part::Index.name());
         Ok(PrintedOperations {
             index: index.map(|entry| (entry.section, entry.counts.clone())).collect(),
-            places,
-            all_places: all.part(Part::Forces.name()),
-            one_place: one.part(Part::Forces.name()),
+            offsets,
+            all_offsets: all.part(Part::Forces.name()),
+            one_offset: one.part(Part::Forces.name()),
             gravity: model.gravity != [0.0; 2],
         })
     }
@@ -124,8 +124,8 @@ impl PrintedOperations {
         let of = |all: &OpCounts| all.filtered(counts).total();
         let index = self.index.iter().filter(|(section, _)| !(folded && *section == "i of (2)"));
         // One more offset, with its operands and its three sums; a sum in memory is loaded, added to and stored.
-        let each = (of(&self.all_places) - of(&self.one_place)) / (self.places - 1);
-        let once = |class| self.one_place.of_class(class);
+        let each = (of(&self.all_offsets) - of(&self.one_offset)) / (self.offsets - 1);
+        let once = |class| self.one_offset.of_class(class);
         let operands = if loads { once(OpClass::Load) + once(OpClass::Store) } else { 0 };
         let stored = if stores { once(OpClass::Store) } else { 0 };
         let gear = |corrects| {

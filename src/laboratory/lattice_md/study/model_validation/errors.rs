@@ -7,7 +7,7 @@ use crate::statistics::quantile;
 /// Name of a whole step among the phases.
 const STEP: &str = "step";
 /// Name of a program of a law without calibration.
-pub(super) const STRANGER: &str = "law";
+pub(super) const UNCALIBRATED_LAW: &str = "law";
 /// Number of worst cases in the table.
 const NAMED: usize = 12;
 
@@ -17,7 +17,7 @@ pub(super) struct ValidationCase {
     /// Precision, NP and ρ; or the law and the length of the vectors.
     pub(super) place: String,
     pub(super) execution: &'static str,
-    /// Name of the phase, [`STEP`] or [`STRANGER`].
+    /// Name of the phase, [`STEP`] or [`UNCALIBRATED_LAW`].
     pub(super) phase: &'static str,
     /// Nanoseconds.
     pub(super) predicted: f64,
@@ -86,11 +86,13 @@ fn groups(cases: &[ValidationCase]) -> Vec<(String, Vec<f64>)> {
     for (kind, is_step) in [("whole steps", true), ("phases", false)] {
         for (engine, depends) in engines {
             group(format!("{kind}, {engine}"), &|case| {
-                case.phase != STRANGER && (case.phase == STEP) == is_step && case.depends_on_data() == depends
+                case.phase != UNCALIBRATED_LAW
+                    && (case.phase == STEP) == is_step
+                    && case.depends_on_data() == depends
             });
         }
     }
-    group("laws that nothing was calibrated on".into(), &|case| case.phase == STRANGER);
+    group("laws that nothing was calibrated on".into(), &|case| case.phase == UNCALIBRATED_LAW);
     for (name, _) in EXECUTIONS {
         group(format!("whole steps, {name}"), &|case| case.phase == STEP && case.execution == name);
     }
@@ -112,7 +114,7 @@ mod tests {
             case(92.0, "eager", "index"),
             case(140.0, "chained", "forces"),
             case(80.0, "lists", "forces"),
-            case(110.0, "eager", STRANGER),
+            case(110.0, "eager", UNCALIBRATED_LAW),
         ];
         let groups = groups(&cases);
         let of = |what: &str| &groups.iter().find(|(known, _)| known == what).unwrap().1;

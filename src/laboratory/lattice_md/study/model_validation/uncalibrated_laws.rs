@@ -1,6 +1,6 @@
 //! Programs of laws without calibration, to test that the model does not need a fitted number for every program.
 
-use super::errors::{STRANGER, ValidationCase};
+use super::errors::{UNCALIBRATED_LAW, ValidationCase};
 use super::{EXECUTIONS, OutsideCalibration};
 use crate::laboratory::lattice_md::study::StudyError;
 use crate::laboratory::lattice_md::study::samples::Samples;
@@ -76,7 +76,7 @@ fn time_program(
                 .map_err(MeasurementError::from)?;
         }
         let (place, measured) = (format!("{name}, n = {n}"), samples[0].median().unwrap_or(f64::NAN));
-        Ok(ValidationCase { place, execution, phase: STRANGER, predicted, measured })
+        Ok(ValidationCase { place, execution, phase: UNCALIBRATED_LAW, predicted, measured })
     });
     cases.collect()
 }
