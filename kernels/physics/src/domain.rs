@@ -53,6 +53,12 @@ impl Domain {
         matches!(self.sides[axis], BoxSide::Periodic(_))
     }
 
+    /// Shortest periodic side in the plane (length); infinite if there is none.
+    pub(crate) fn shortest_period(&self) -> f64 {
+        let periodic = (0..2).filter(|&axis| self.is_periodic(axis)).map(|axis| self.length(axis));
+        periodic.fold(f64::INFINITY, f64::min)
+    }
+
     /// Lower left corner of a planar box (length).
     pub fn corner(&self) -> [f64; 2] {
         [self.origin[0], self.origin[1]]
@@ -74,6 +80,7 @@ impl Domain {
     }
 
     /// Vector from `from` to `to`, the shortest across periodic sides (length).
+    #[inline(always)]
     pub fn displacement<const D: usize>(&self, from: [f64; D], to: [f64; D]) -> [f64; D] {
         std::array::from_fn(|axis| {
             let difference = to[axis] - from[axis];
@@ -93,6 +100,7 @@ impl Domain {
     }
 
     /// Image of a position inside the box along the periodic sides.
+    #[inline(always)]
     pub fn wrapped<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
         std::array::from_fn(|axis| {
             let origin = self.origin[axis];

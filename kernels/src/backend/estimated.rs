@@ -122,8 +122,13 @@ impl<S: Simd, T: EstimatingElement, const RAW: bool> Registers for EstimatingReg
     type Lane = T;
     type V = EstimatedVector<S, T, RAW>;
     type Index = T::Index;
+    type Single = Pulp<S, f32>;
     const LANES: usize = Pulp::<S, T>::LANES;
 
+    #[inline(always)]
+    fn single(self) -> Pulp<S, f32> {
+        self.0.single()
+    }
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
         EstimatedVector(self.1, self.0.splat(value))

@@ -219,8 +219,13 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     type Lane = T;
     type V = PulpRegister<S, T>;
     type Index = T::Index;
+    type Single = Pulp<S, f32>;
     const LANES: usize = size_of::<T::V<S>>() / T::BYTES;
 
+    #[inline(always)]
+    fn single(self) -> Pulp<S, f32> {
+        Pulp::new(self.simd)
+    }
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
         PulpRegister(self.simd, T::splat(self.simd, value))

@@ -43,8 +43,13 @@ pub trait Registers: Copy + 'static {
     type V: Vector;
     /// An index vector as wide as `V`.
     type Index: IndexLanes;
+    /// Registers of the same width with single-precision lanes.
+    type Single: Registers<Lane = f32>;
     /// Lanes of `V`, at most 16.
     const LANES: usize;
+
+    /// Single-precision registers of the same instruction set.
+    fn single(self) -> Self::Single;
 
     /// Broadcasts a number to every lane.
     fn splat(self, value: Self::Lane) -> Self::V;

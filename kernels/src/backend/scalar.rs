@@ -35,8 +35,13 @@ impl<T: Element> Registers for Scalar<T> {
     type Lane = T;
     type V = T;
     type Index = [u32; 1];
+    type Single = Scalar<f32>;
     const LANES: usize = 1;
 
+    #[inline(always)]
+    fn single(self) -> Scalar<f32> {
+        Scalar::default()
+    }
     #[inline(always)]
     fn splat(self, value: T) -> T {
         value

@@ -110,8 +110,13 @@ impl<T: WideElement> Registers for Wide<T> {
     type Lane = T;
     type V = T::WideVector;
     type Index = T::Index;
+    type Single = Wide<f32>;
     const LANES: usize = size_of::<T::WideVector>() / T::BYTES;
 
+    #[inline(always)]
+    fn single(self) -> Wide<f32> {
+        Wide::default()
+    }
     #[inline(always)]
     fn splat(self, value: T) -> Self::V {
         T::WideVector::splat(value)

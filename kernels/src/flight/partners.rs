@@ -2,7 +2,7 @@
 
 use super::{FlightState, FlyingDisc, Space, collision_times};
 use crate::backend::Registers;
-use crate::isa::{Predicate, Vector};
+use crate::isa::Vector;
 
 /// Largest number of entries in a row of partners.
 pub const MOST_PARTNERS: usize = 64;
@@ -17,14 +17,12 @@ pub struct EarliestCollision {
     pub time: f64,
     /// Partners that collide at that time, one bit each.
     pub partners: u64,
-    /// Partners that collide no later than their earliest known event, one bit each.
-    pub surprised: u64,
 }
 
 /// Finds the earliest collision of the disc `own` with its partners and writes the time of every collision to `times`, infinite
 /// where [`collision_time`](super::collision_time) is. The partners are the first `count` entries of a `row`. The entries behind them may be
-/// the number of any disc: the number of partners is random, so a branch would be mispredicted. `known` has the time of each
-/// disc's earliest known event.
+/// the number of any disc: the number of partners is random, so a branch would be mispredicted. `radius` is that of all discs, if
+/// they are equal.
 ///
 /// # Panics
 /// If a row is longer than [`MOST_PARTNERS`] or not a multiple of [`ROW_UNIT`], or a number is beyond the discs.
@@ -33,14 +31,13 @@ pub fn earliest_collision<R: Registers<Lane = f64>>(
     registers: R,
     space: &Space,
     discs: &[FlyingDisc],
-    known: &[f64],
+    radius: Option<f64>,
     (own, row, count): (u32, &[u32], usize),
     now: f64,
     times: &mut [f64; MOST_PARTNERS],
 ) -> EarliestCollision {
     let is_whole = row.len() <= MOST_PARTNERS && row.len().is_multiple_of(ROW_UNIT);
     assert!(is_whole && count <= row.len(), "{count} partners in a row of {}", row.len());
-    let known = &known[..discs.len()];
     let disc = &discs[own as usize];
     let splat = |value: f64| registers.splat(value);
     let flight = FlightState {
@@ -50,7 +47,6 @@ pub fn earliest_collision<R: Registers<Lane = f64>>(
         radius: splat(disc.radius),
     };
     let mut least = splat(f64::INFINITY);
-    let mut surprised = 0;
     for begin in (0..count).step_by(R::LANES) {
         let some = &row[begin..begin + R::LANES];
         let mut numbers = [0; 16];
@@ -70,7 +66,7 @@ pub fn earliest_collision<R: Registers<Lane = f64>>(
             position: [column(&|it| discs[it].position[0]), column(&|it| discs[it].position[1])],
             velocity: [column(&|it| discs[it].velocity[0]), column(&|it| discs[it].velocity[1])],
             time: column(&|it| discs[it].time),
-            radius: column(&|it| discs[it].radius),
+            radius: radius.map_or_else(|| column(&|it| discs[it].radius), splat),
         };
         let met = collision_times(registers, space, &flight, &others, now, f64::INFINITY);
         let here = (count - begin).min(ROW_UNIT);
@@ -78,9 +74,6 @@ pub fn earliest_collision<R: Registers<Lane = f64>>(
         let met = met.max(unsafe { registers.load(ABSENT.0.as_ptr().add(ROW_UNIT - here)) });
         // SAFETY: a whole number of registers fits, because their lanes are a power of two up to sixteen.
         unsafe { registers.store(times.as_mut_ptr().add(begin), met) };
-        let finite = met.less_than(splat(f64::INFINITY));
-        let sooner = met.less_equal(column(&|it| known[it])).and(finite);
-        surprised |= registers.bits(sooner) << begin;
         least = least.min(met);
     }
     let mut lanes = LaneBuffer([f64::INFINITY; 16]);
@@ -95,7 +88,7 @@ pub fn earliest_collision<R: Registers<Lane = f64>>(
             first |= registers.bits(met.equal(splat(time))) << begin;
         }
     }
-    EarliestCollision { time, partners: first, surprised }
+    EarliestCollision { time, partners: first }
 }
 
 /// Smallest of the first `count` numbers, by repeated halving.
@@ -144,7 +137,7 @@ mod tests {
     struct PartnerSearch<'a> {
         space: &'a Space,
         discs: &'a [FlyingDisc],
-        known: &'a [f64],
+        radius: Option<f64>,
         partners: (&'a [u32], usize),
         times: &'a mut [f64; MOST_PARTNERS],
         found: &'a mut Option<EarliestCollision>,
@@ -153,12 +146,12 @@ mod tests {
     impl RegisterTask<f64> for PartnerSearch<'_> {
         #[inline(always)]
         fn on<R: Registers<Lane = f64>>(self, registers: R) {
-            let PartnerSearch { space, discs, known, partners, times, found } = self;
+            let PartnerSearch { space, discs, radius, partners, times, found } = self;
             *found = Some(earliest_collision(
                 registers,
                 space,
                 discs,
-                known,
+                radius,
                 (0, partners.0, partners.1),
                 3.0,
                 times,
@@ -186,7 +179,11 @@ mod tests {
                         events: 0,
                     })
                     .collect();
-                let known: Vec<f64> = discs.iter().map(|_| draw(3.0, 9.0)).collect();
+                let equal = (count == 9).then_some(0.4);
+                let discs: Vec<FlyingDisc> = discs
+                    .into_iter()
+                    .map(|disc| FlyingDisc { radius: equal.unwrap_or(disc.radius), ..disc })
+                    .collect();
                 let mut row: Vec<u32> = (1..=count as u32).collect();
                 // Behind the partners are the disc itself, and one that it may collide with.
                 row.resize(count.next_multiple_of(ROW_UNIT), 0);
@@ -196,10 +193,16 @@ mod tests {
                 let partners = (&row[..], count);
                 let times = |set: InstructionSet| {
                     let mut times = [0.0; MOST_PARTNERS];
-                    let (space, discs, known, partners) = (&space, &discs, &known, partners);
+                    let (space, discs) = (&space, &discs);
                     let mut found = None;
-                    let search =
-                        PartnerSearch { space, discs, known, partners, times: &mut times, found: &mut found };
+                    let search = PartnerSearch {
+                        space,
+                        discs,
+                        radius: equal,
+                        partners,
+                        times: &mut times,
+                        found: &mut found,
+                    };
                     dispatch_native(set, search).unwrap();
                     (found.unwrap(), times[..count].to_vec())
                 };
@@ -216,7 +219,6 @@ mod tests {
                     for (lane, time) in expected.iter().enumerate() {
                         let is = |bits: u64| bits >> lane & 1 == 1;
                         assert_eq!(is(found.partners), *time == least && time.is_finite());
-                        assert_eq!(is(found.surprised), *time <= known[lane + 1] && time.is_finite());
                     }
                 }
             }

@@ -6,20 +6,39 @@ use crate::method::Snapshot;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::FlyingDisc;
 
-/// Event-driven engine, which owns the moving discs. Discs are numbered in the order of their ids.
-pub(crate) trait EventEngine: Send {
+/// Discs of an engine, numbered in the order of their ids.
+pub(crate) trait MovingDiscs {
     /// Number of discs.
     fn count(&self) -> usize;
 
     /// Returns a disc in its state after its last event.
     fn disc(&self, number: u32) -> &FlyingDisc;
+}
 
-    /// Executes the next event if it comes no later than `until` (time) and before all discs have had their partners searched
-    /// `most` times.
+/// Receives each event with the discs after it, and returns true if the engine shall go on.
+pub(crate) type EventObserver<'o> = dyn FnMut(&ExecutedEvent, &dyn MovingDiscs) -> bool + 'o;
+
+/// Event-driven engine, which owns the moving discs.
+pub(crate) trait EventEngine: MovingDiscs + Send {
+    /// Executes events until the observer stops the engine, and returns true then. Returns false as soon as no event is left that comes no
+    /// later than `until` (time) and before all discs have had their partners searched `most` times.
     ///
     /// # Errors
     /// [`EngineError`] if a precondition of the engine is broken.
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError>;
+    fn run(&mut self, until: f64, most: u64, observer: &mut EventObserver<'_>) -> Result<bool, EngineError>;
+
+    /// Executes the next event, if [`run`](Self::run) would.
+    ///
+    /// # Errors
+    /// [`EngineError`] if a precondition of the engine is broken.
+    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError> {
+        let mut executed = None;
+        self.run(until, most, &mut |event, _| {
+            executed = Some(*event);
+            false
+        })?;
+        Ok(executed)
+    }
 
     /// Number of partner searches per disc.
     fn rebuilds(&self) -> u64;
@@ -86,7 +105,7 @@ pub(crate) enum EngineError {
 
 impl ExecutedEvent {
     /// Collides two discs, given with their numbers in any order.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn collision(
         arena: &Arena,
         a: (u32, &mut FlyingDisc),

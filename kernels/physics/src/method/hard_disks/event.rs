@@ -109,6 +109,7 @@ impl Arena {
     }
 
     /// Position of a disc at a time, inside the box along periodic sides (length).
+    #[inline(always)]
     pub(crate) fn position_at(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
         self.domain.wrapped(disc.at(&self.space, time))
     }
@@ -142,7 +143,7 @@ impl Arena {
     }
 
     /// Advances a disc to the time of its event.
-    #[inline]
+    #[inline(always)]
     fn advance(&self, disc: &mut FlyingDisc, time: f64) {
         let (position, velocity) = (self.position_at(disc, time), disc.velocity_at(&self.space, time));
         (disc.position, disc.velocity, disc.time) = (position, velocity, time);
@@ -150,12 +151,13 @@ impl Arena {
     }
 
     /// True if an event of a disc follows its last one so soon that it is elastic.
+    #[inline(always)]
     fn is_too_soon(&self, disc: &FlyingDisc, time: f64) -> bool {
         disc.events > 0 && time - disc.time < self.law.contact_duration
     }
 
     /// Time at which a disc meets a closed side, and the axis; infinite if no side is ahead.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn wall(&self, disc: &FlyingDisc) -> (f64, usize) {
         let along = |axis: usize| match self.domain.sides[axis] {
             BoxSide::Closed(side) => self.wall_along(disc, axis, Some(side)),
@@ -188,6 +190,7 @@ impl Arena {
     }
 
     /// Collides two discs; `a` has the smaller number.
+    #[inline(always)]
     pub(crate) fn collide(&self, a: &mut FlyingDisc, b: &mut FlyingDisc, time: f64) -> DiscCollision {
         let CollisionLaw { restitution, .. } = self.law;
         let was_made_elastic = restitution < 1.0 && (self.is_too_soon(a, time) || self.is_too_soon(b, time));
@@ -203,10 +206,16 @@ impl Arena {
             // Closing speed of the growing surfaces.
             Some(growth) => closing - (a.radius + b.radius) * growth.rate * square.sqrt(),
         };
-        let effective = a.mass * b.mass / (a.mass + b.mass);
+        // Equal masses cancel, so that no division waits for another.
+        let is_equal = a.mass == b.mass;
+        let effective = if is_equal { 0.5 } else { a.mass * b.mass / (a.mass + b.mass) };
         let virial = ((-1.0 - restitution) * effective * closing).max(0.0);
         let impulse = virial / square;
-        let [of_a, of_b] = [impulse / a.mass, impulse / b.mass];
+        let (of_a, of_b, unit) = match is_equal {
+            true => (impulse, impulse, a.mass),
+            false => (impulse / a.mass, impulse / b.mass, 1.0),
+        };
+        let (virial, impulse) = (unit * virial, unit * impulse);
         a.velocity = [a.velocity[0] - of_a * dx, a.velocity[1] - of_a * dy];
         b.velocity = [b.velocity[0] + of_b * dx, b.velocity[1] + of_b * dy];
         let loss = -0.5 * (1.0 - restitution) * closing * impulse;

@@ -1,6 +1,6 @@
 //! Oracle for all engines: brute-force search over all pairs and walls for each event.
 
-use super::engine::{EventEngine, EventPartner, ExecutedEvent};
+use super::engine::{EventEngine, EventPartner, ExecutedEvent, MovingDiscs};
 use super::event::{Arena, CollisionLaw, ThermalWall};
 use super::fast::{Fast, displacement_limit};
 use super::floor::Floor;
@@ -198,6 +198,25 @@ fn engines_conserve_energy_and_momentum() {
             assert!(apart > (a.radius + b.radius) * (1.0 - 1e-12), "{apart}");
         }
     }
+}
+
+/// A dense cluster in a thin gas: lists are full, and are narrowed.
+#[test]
+fn engines_match_in_a_cluster() {
+    let domain = Domain::planar([0.0; 2], [150.0; 2], [true; 2]);
+    let mut stream = Stream::new(8, RandomPurpose::Test, 2);
+    let mut discs = random(&domain, 300, 0.0, 5);
+    discs.retain(|disc| disc.position.iter().any(|&along| along > 20.0));
+    for at in 0..144 {
+        let position = [at / 12, at % 12].map(|along| 2.0 + 1.2 * f64::from(along));
+        let velocity = [0, 1].map(|_| stream.random_range(-1.0..1.0));
+        discs.push(FlyingDisc { position, velocity, time: 0.0, radius: 0.5, mass: 1.0, events: 0 });
+    }
+    let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
+    let before = displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).unwrap();
+    let narrowed = Fast::new(arena, discs.clone(), InstructionSet::best(), 0.0).unwrap().figures()[2].1;
+    assert!(narrowed < before, "{narrowed}, {before}");
+    assert!(compare_with_oracle(arena, &discs, 600) > 0);
 }
 
 /// Both engines find the same 10⁶ events: at three densities, with polydisperse discs that lose energy, and under gravity.

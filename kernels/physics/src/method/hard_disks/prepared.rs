@@ -102,8 +102,8 @@ impl CheckedHardDisks {
                 // Event, node, cell and position per disc; the peak is lower than with lists, because nothing is sorted (measured).
                 4.0 * cells + (16.0 + 8.0 + 4.0 + 24.0 - 40.0) * discs
             }
-            // List, time, partner, position, numbers and cells; discs and keys again while they are sorted.
-            None => (64.0 + 9.2 + 4.0 + 16.0 + 8.0 + 8.0 + 80.0) * discs,
+            // List, time, partner, position, numbers and slots of cells; discs and keys again while they are sorted.
+            None => (64.0 + 9.2 + 8.0 + 16.0 + 8.0 + 36.0 + 80.0) * discs,
         };
         // Each disc in the state after its last event, and two counts.
         let followed = match self.scene.output.follows_motion() {

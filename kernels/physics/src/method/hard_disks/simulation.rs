@@ -128,23 +128,52 @@ impl HardDiskSimulation {
         (0..self.engine.count() as u32).map(|number| self.engine.disc(number))
     }
 
-    fn record_event(&mut self, happened: &ExecutedEvent) {
-        self.clock.events += 1;
-        self.clock.time = happened.time;
-        self.may_meet = false;
-        self.totals.add(happened);
-        if let Some(followed) = &mut self.followed {
-            let mut see = |disc: u32| followed.register_crossings(&self.arena, disc, self.engine.disc(disc));
-            see(happened.disc);
-            if let EventPartner::Disc(other) = happened.with {
-                see(other);
+    /// Runs the engine up to a time, for at most as many partner searches, and until a moment is reached or an interruption is due.
+    /// Returns true if events are left, and the event that completes endless collisions.
+    fn run_engine(
+        &mut self,
+        end: f64,
+        most: u64,
+        until: &[Until],
+    ) -> Result<(bool, Option<(ExecutedEvent, EndlessCollisions)>), EngineError> {
+        let HardDiskSimulation {
+            engine,
+            arena,
+            clock,
+            totals,
+            watch,
+            may_meet,
+            particles,
+            places,
+            log,
+            followed,
+            ..
+        } = self;
+        let mut endless = None;
+        let left = engine.run(end, most, &mut |happened, discs| {
+            clock.events += 1;
+            clock.time = happened.time;
+            *may_meet = false;
+            totals.add(happened);
+            if let Some(followed) = followed {
+                let mut see = |disc: u32| followed.register_crossings(arena, disc, discs.disc(disc));
+                see(happened.disc);
+                if let EventPartner::Disc(other) = happened.with {
+                    see(other);
+                }
             }
-        }
-        if let Some(log) = &mut self.log {
-            let all = self.particles.all();
-            let id = |disc: u32| all[self.places[disc as usize]].id;
-            log.add(self.clock.events, happened, &self.arena, &|disc| self.engine.disc(disc), &id);
-        }
+            if let Some(log) = log {
+                let all = particles.all();
+                let id = |disc: u32| all[places[disc as usize]].id;
+                log.add(clock.events, happened, arena, &|disc| discs.disc(disc), &id);
+            }
+            let crossing = || crossing((0..discs.count() as u32).map(|number| discs.disc(number)));
+            endless = watch.register_event(happened, crossing).map(|endless| (*happened, endless));
+            endless.is_none()
+                && !clock.events.is_multiple_of(INTERRUPT_CHECK_INTERVAL)
+                && !until.iter().any(|moment| moment.has_been_reached(clock))
+        })?;
+        Ok((left, endless))
     }
 
     /// True if no event can ever happen. The proof runs at most once between two events.
@@ -318,26 +347,20 @@ impl Simulation for HardDiskSimulation {
                 break;
             }
             let since_check = self.engine.rebuilds() + INTERRUPT_CHECK_INTERVAL;
-            match self.engine.next(end, since_check) {
+            match self.run_engine(end, since_check, until) {
                 Err(why) => return Err(self.failure(why)),
-                Ok(Some(happened)) => {
-                    self.record_event(&happened);
-                    let engine = &self.engine;
-                    let crossing = || crossing((0..engine.count() as u32).map(|number| engine.disc(number)));
-                    if let Some(endless) = self.watch.register_event(&happened, crossing) {
-                        return Err(self.endless(&happened, endless));
-                    }
-                }
+                Ok((_, Some((happened, endless)))) => return Err(self.endless(&happened, endless)),
+                Ok((true, None)) => {}
                 // No event is left, or none up to the end, or none within the checked number of rebuilds.
-                Ok(None) if self.engine.rebuilds() < since_check && end.is_finite() => self.clock.time = end,
-                Ok(None) if self.engine.rebuilds() < since_check || self.is_idle() => {
+                Ok(_) if self.engine.rebuilds() < since_check && end.is_finite() => self.clock.time = end,
+                Ok(_) if self.engine.rebuilds() < since_check || self.is_idle() => {
                     if end.is_infinite() {
                         return Err(self.idle());
                     }
                     self.clock.time = end;
                 }
-                Ok(None) if interrupted.load(Ordering::Relaxed) => break,
-                Ok(None) => {}
+                Ok(_) if interrupted.load(Ordering::Relaxed) => break,
+                Ok(_) => {}
             }
         }
         self.seconds += begun.elapsed().as_secs_f64();

@@ -135,13 +135,9 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
                 let offset = [0, 1].map(|axis| {
                     let (count, cells) =
                         (counts[axis] as isize, cell[axis] as isize - [column, row][axis] as isize);
-                    if periodic[axis] && cell_offset.abs() > half {
-                        cell_offset - cell_offset.signum() * count
-                    } else {
-                        cell_offset
-                    }
+                    if periodic[axis] && cells.abs() > half { cells - cells.signum() * count } else { cells }
                 });
-                if offset.iter().all(|cells| cell_offset.abs() <= half) {
+                if offset.iter().all(|cells| cells.abs() <= half) {
                     found.push([disc, other], cell_offset(offset));
                 }
             }

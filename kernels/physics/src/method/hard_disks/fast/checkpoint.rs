@@ -1,11 +1,12 @@
 //! State of the fast engine in a checkpoint, and resumption from it.
 
 use super::leaving::leaving_time;
-use super::lists::DiscNeighbourLists;
+use super::lists::{DiscNeighbourLists, Radii};
 use super::queue::EventQueue;
-use super::{ExpectedEvent, Fast, LISTED, WALL};
+use super::{ExpectedEvent, Fast, LISTED, WALL, rank};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
+use stripmine_kernels::backend::Scalar;
 use stripmine_kernels::flight::{FlyingDisc, MOST_PARTNERS, ROW_UNIT};
 use stripmine_kernels::isa::AlignedColumn;
 
@@ -65,7 +66,9 @@ impl Fast {
         // Narrower lists would be renewed endlessly.
         let narrowest = NARROWEST * self.largest;
         let is_whole = stride <= MOST_PARTNERS as u64 && stride.is_multiple_of(ROW_UNIT as u64);
-        if !is_whole || !(narrowest..f64::INFINITY).contains(&displacement_limit) {
+        // In a narrower box a disc would list others across two of its sides.
+        let widest = 0.25 * self.arena.domain.shortest_period() - self.largest;
+        if !is_whole || !(narrowest..widest).contains(&displacement_limit) {
             return Err(format!(
                 "lists have {stride} entries and the displacement limit {displacement_limit}"
             ));
@@ -98,7 +101,8 @@ impl Fast {
             LISTED,
             stride as usize,
         );
-        let full = lists.begin(&places, |disc| discs[disc as usize].radius);
+        let radii = Radii { equal: self.alike.then_some(self.largest), discs };
+        let full = lists.begin(Scalar::default(), &places, radii);
         full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
         self.lists = lists;
         self.check_expectations(times)?;
@@ -107,7 +111,8 @@ impl Fast {
             let expects = with[number as usize];
             let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };
             self.partners[place] = ExpectedEvent { with, events: events[number as usize] };
-            self.queue.set(place, number, times[number as usize]);
+            let (numbers, partners) = (&self.numbers, &self.partners);
+            self.queue.set(place as u32, times[number as usize], |disc| rank(numbers, partners, disc));
         }
         Ok(())
     }

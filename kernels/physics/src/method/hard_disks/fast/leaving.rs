@@ -14,7 +14,7 @@ pub(super) fn free_path(count: f64, radius: f64, area: f64) -> f64 {
 
 /// Earliest time at which a disc, at its position at `now`, may be farther than `displacement_limit` from its registered position.
 /// Returns infinity if that is not before its `next` event.
-#[inline]
+#[inline(always)]
 pub(super) fn leaving_time(
     arena: &Arena,
     disc: &FlyingDisc,

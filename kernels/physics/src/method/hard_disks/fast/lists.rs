@@ -4,12 +4,12 @@
 //! A disc within `displacement_limit` of its registered position meets only discs registered within the sum of the radii and twice
 //! the displacement limit. Those are in its list, and it is in theirs.
 
-use crate::domain::{BoxSide, Domain};
-use stripmine_kernels::flight::ROW_UNIT;
+use super::cells::{FOUND, RegistrationCells};
+use crate::domain::Domain;
+use stripmine_kernels::backend::Registers;
+use stripmine_kernels::flight::{FlyingDisc, ROW_UNIT};
 use stripmine_kernels::isa::AlignedColumn;
 
-/// Marks the end of a cell's chain.
-const NONE: u32 = u32::MAX;
 /// Average fill fraction of a row.
 const FILLED: f64 = 0.6;
 
@@ -26,23 +26,20 @@ pub(crate) struct DiscNeighbourLists {
     cells: RegistrationCells,
 }
 
-/// Linked cells of the registered positions. Rows and columns of cells wrap around the grid, so an infinite side needs no more cells.
-/// Discs that share a cell by wrapping are far apart, and the distance check excludes them.
-#[derive(Clone, Debug)]
-struct RegistrationCells {
-    counts: [usize; 2],
-    edge: [f64; 2],
-    /// First disc of each cell, row by row.
-    first: AlignedColumn<u32>,
-    /// Next disc of the same cell.
-    next: AlignedColumn<u32>,
+/// Radii of the discs.
+#[derive(Clone, Copy)]
+pub(super) struct Radii<'d> {
+    /// Radius of all discs (length); none if they differ.
+    pub(super) equal: Option<f64>,
+    pub(super) discs: &'d [FlyingDisc],
 }
 
-/// Maximum number of neighbours found around a disc, more than a list holds.
-const FOUND: usize = 128;
-
-/// Half-width of the searched block of cells.
-const AROUND: isize = 2;
+impl Radii<'_> {
+    #[inline(always)]
+    fn of(&self, disc: u32) -> f64 {
+        self.equal.unwrap_or_else(|| self.discs[disc as usize].radius)
+    }
+}
 
 /// Largest allowed displacement from the registered position (length). Lists then hold about `most` discs, and no disc sees another
 /// one across two sides. Returns none if the box is too small for lists.
@@ -59,9 +56,8 @@ pub(crate) fn displacement_limit(
     let density = if bounded { count / domain.area() } else { 0.5 / (largest * largest) };
     let sight = ((most + 1.0) / (std::f64::consts::PI * density)).sqrt();
     let wanted = 0.5 * (sight - 2.0 * sum / count);
-    let periodic = (0..2).filter(|&axis| domain.is_periodic(axis)).map(|axis| domain.length(axis));
     // Listed discs are registered within the sum of radii plus two limits and move by two more: together less than half a side.
-    let bound = periodic.fold(f64::INFINITY, f64::min) / 8.0 - 0.5 * largest;
+    let bound = domain.shortest_period() / 8.0 - 0.5 * largest;
     let displacement_limit = wanted.max(0.1 * largest).min(0.9 * bound);
     (displacement_limit >= 0.05 * largest).then_some(displacement_limit)
 }
@@ -85,7 +81,7 @@ impl DiscNeighbourLists {
             positions: AlignedColumn::filled(10, [0.0; 2], count),
             rows: empty_rows(count, stride.max(least)),
             stride: stride.max(least),
-            cells: RegistrationCells::new(&domain, count, sight / AROUND as f64),
+            cells: RegistrationCells::new(&domain, count, sight),
         }
     }
 
@@ -127,14 +123,25 @@ impl DiscNeighbourLists {
         self.positions.prefetch(disc);
     }
 
+    /// Prefetches the cache lines that the renewal of a list at a position reads.
+    #[inline(always)]
+    pub(super) fn prefetch_cells(&self, position: [f64; 2]) {
+        self.cells.prefetch(&self.domain, position);
+    }
+
     /// Registers unregistered discs at `positions` inside the box (length). Each disc lists those registered before it, and they list
     /// it.
     ///
     /// # Errors
     /// The disc whose list is full.
-    pub(super) fn begin(&mut self, positions: &[[f64; 2]], radius: impl Fn(u32) -> f64) -> Result<(), u32> {
+    pub(super) fn begin<R: Registers<Lane = f32>>(
+        &mut self,
+        registers: R,
+        positions: &[[f64; 2]],
+        radii: Radii<'_>,
+    ) -> Result<(), u32> {
         for (disc, &position) in positions.iter().enumerate() {
-            self.enter(disc as u32, position, &radius)?;
+            self.enter(registers, disc as u32, position, radii)?;
         }
         Ok(())
     }
@@ -143,52 +150,56 @@ impl DiscNeighbourLists {
     ///
     /// # Errors
     /// The disc whose list is full.
-    pub(crate) fn renew(
+    #[inline(always)]
+    pub(crate) fn renew<R: Registers<Lane = f32>>(
         &mut self,
+        registers: R,
         disc: u32,
         position: [f64; 2],
-        radius: impl Fn(u32) -> f64,
+        radii: Radii<'_>,
     ) -> Result<(), u32> {
-        self.cells.remove(disc, self.cells.of(&self.domain, self.positions[disc as usize]));
+        self.cells.remove(&self.domain, disc, self.positions[disc as usize]);
         let begin = disc as usize * self.stride;
         for entry in 0..self.rows[begin + self.stride - 1] as usize {
             let other = self.rows[begin + entry];
             self.remove_partner(other, disc);
         }
         clear(&mut self.rows[begin..begin + self.stride], disc);
-        self.enter(disc, position, &radius)
+        self.enter(registers, disc, position, radii)
     }
 
-    fn enter(&mut self, disc: u32, position: [f64; 2], radius: &impl Fn(u32) -> f64) -> Result<(), u32> {
+    #[inline(always)]
+    fn enter<R: Registers<Lane = f32>>(
+        &mut self,
+        registers: R,
+        disc: u32,
+        position: [f64; 2],
+        radii: Radii<'_>,
+    ) -> Result<(), u32> {
         self.positions[disc as usize] = position;
-        let at = self.cells.coordinates(&self.domain, position);
-        let reach = radius(disc) + 2.0 * self.displacement_limit;
-        let [columns, rows] = [0, 1].map(|axis| self.cells.around(axis, at[axis]));
-        // Candidates overwrite each other until one is near enough: a branch per candidate would be unpredictable.
-        let (mut found, mut count) = ([0; FOUND], 0);
-        for row in rows {
-            for column in columns {
-                let mut other = self.cells.first[row * self.cells.counts[0] + column];
-                while other != NONE {
-                    let [dx, dy] = self.domain.displacement(position, self.positions[other as usize]);
-                    let near = (reach + radius(other)) * (1.0 + 1e-9);
-                    found[count] = other;
-                    count += usize::from(dx * dx + dy * dy < near * near);
-                    if count == FOUND {
-                        return Err(disc);
-                    }
-                    other = self.cells.next[other as usize];
-                }
+        let mut found = [0; FOUND];
+        let mut count = self.cells.find(registers, &self.domain, position, &mut found).ok_or(disc)?;
+        if self.cells.is_approximate() || radii.equal.is_none() {
+            let reach = radii.of(disc) + 2.0 * self.displacement_limit;
+            let mut near = 0;
+            for at in 0..count {
+                let other = found[at];
+                let [dx, dy] = self.domain.displacement(position, self.positions[other as usize]);
+                let reach = (reach + radii.of(other)) * (1.0 + 1e-9);
+                found[near] = other;
+                near += usize::from(dx * dx + dy * dy < reach * reach);
             }
+            count = near;
         }
         for &other in &found[..count] {
             self.add(disc, other)?;
             self.add(other, disc)?;
         }
-        self.cells.add(disc, self.cells.round(at));
+        self.cells.add(&self.domain, disc, position);
         Ok(())
     }
 
+    #[inline(always)]
     fn add(&mut self, to: u32, disc: u32) -> Result<(), u32> {
         let row = &mut self.rows[to as usize * self.stride..][..self.stride];
         let (count, entries) = row.split_last_mut().ok_or(to)?;
@@ -197,6 +208,7 @@ impl DiscNeighbourLists {
         Ok(())
     }
 
+    #[inline(always)]
     fn remove_partner(&mut self, from: u32, disc: u32) {
         let row = &mut self.rows[from as usize * self.stride..][..self.stride];
         let last = row.len() - 1;
@@ -224,93 +236,17 @@ fn clear(row: &mut [u32], disc: u32) {
     row[row.len() - 1] = 0;
 }
 
-impl RegistrationCells {
-    fn new(domain: &Domain, count: usize, least_edge: f64) -> RegistrationCells {
-        let most = (count as f64).sqrt().max(8.0);
-        let counts = [0, 1].map(|axis| match domain.sides[axis] {
-            BoxSide::Open | BoxSide::Flat => most as usize,
-            BoxSide::Periodic(side) | BoxSide::Closed(side) => ((side / least_edge) as usize).max(1),
-        });
-        let edge = [0, 1].map(|axis| match domain.sides[axis] {
-            BoxSide::Open | BoxSide::Flat => least_edge,
-            BoxSide::Periodic(side) | BoxSide::Closed(side) => side / counts[axis] as f64,
-        });
-        // With fewer cells along a side than a search covers, some would be visited twice.
-        let counts = counts.map(|along| along.max(2 * AROUND as usize + 1));
-        RegistrationCells {
-            counts,
-            edge,
-            first: AlignedColumn::filled(12, NONE, counts[0] * counts[1]),
-            next: AlignedColumn::filled(13, NONE, count),
-        }
-    }
-
-    #[inline(always)]
-    fn coordinates(&self, domain: &Domain, position: [f64; 2]) -> [isize; 2] {
-        // No position is below the origin of the box.
-        [0, 1].map(|axis| ((position[axis] - domain.origin[axis]) / self.edge[axis]) as isize)
-    }
-
-    /// Columns or rows searched around one of them.
-    #[inline(always)]
-    fn around(&self, axis: usize, at: isize) -> [usize; 2 * AROUND as usize + 1] {
-        let count = self.counts[axis] as isize;
-        let at = if at < count { at } else { at % count };
-        std::array::from_fn(|step| {
-            let along = at + step as isize - AROUND;
-            (if along < 0 {
-                along + count
-            } else if along >= count {
-                along - count
-            } else {
-                along
-            }) as usize
-        })
-    }
-
-    #[inline(always)]
-    fn round(&self, at: [isize; 2]) -> usize {
-        let [column, row] = [0, 1].map(|axis| {
-            let count = self.counts[axis] as isize;
-            let along = at[axis];
-            // Usually inside.
-            if (0..count).contains(&along) { along as usize } else { along.rem_euclid(count) as usize }
-        });
-        row * self.counts[0] + column
-    }
-
-    fn of(&self, domain: &Domain, position: [f64; 2]) -> usize {
-        self.round(self.coordinates(domain, position))
-    }
-
-    fn add(&mut self, disc: u32, cell: usize) {
-        self.next[disc as usize] = self.first[cell];
-        self.first[cell] = disc;
-    }
-
-    fn remove(&mut self, disc: u32, cell: usize) {
-        let after = self.next[disc as usize];
-        let mut other = self.first[cell];
-        if other == disc {
-            self.first[cell] = after;
-            return;
-        }
-        while other != NONE {
-            let next = self.next[other as usize];
-            if next == disc {
-                self.next[other as usize] = after;
-                return;
-            }
-            other = next;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::domain::BoxSide;
     use rand::RngExt;
+    use stripmine_kernels::backend::Scalar;
     use stripmine_kernels::noise::{RandomPurpose, Stream};
+
+    fn disc(radius: f64) -> FlyingDisc {
+        FlyingDisc { position: [0.0; 2], velocity: [0.0; 2], time: 0.0, radius, mass: 1.0, events: 0 }
+    }
 
     /// Compared with all pairs as discs move, in boxes of every kind of side.
     #[test]
@@ -321,23 +257,29 @@ mod tests {
             sides: [BoxSide::Periodic(30.0), BoxSide::Open, BoxSide::Flat],
         };
         let planar = |periodic| Domain::planar([-3.0, 2.0], [30.0, 25.0], periodic);
+        let registers = Scalar::<f32>::default();
         let mut pairs = 0;
         for domain in [open, planar([true, true]), planar([true, false])] {
             let count = 150;
             let radii: Vec<f64> = (0..count).map(|_| stream.random_range(0.3..0.5)).collect();
+            let discs: Vec<FlyingDisc> = radii.iter().map(|&radius| disc(radius)).collect();
+            let radii_of_discs = Radii { equal: None, discs: &discs };
             let displacement_limit = displacement_limit(&domain, radii.iter().copied(), 6.0).unwrap();
             let mut draw = || {
                 let along = |axis: usize| domain.length(axis).min(90.0);
                 [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..along(axis)))
             };
             let mut positions: Vec<[f64; 2]> = (0..count).map(|_| draw()).collect();
-            let radius = |disc: u32| radii[disc as usize];
+            // More than a cell has slots for.
+            for position in &mut positions[..20] {
+                *position = [0, 1].map(|axis| domain.origin[axis] + 0.3 + 0.01 * position[axis]);
+            }
             let mut lists = DiscNeighbourLists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
-            lists.begin(&positions, radius).unwrap();
+            lists.begin(registers, &positions, radii_of_discs).unwrap();
             for moved in 0..400 {
                 let disc = moved % count;
                 positions[disc] = draw();
-                lists.renew(disc as u32, positions[disc], radius).unwrap();
+                lists.renew(registers, disc as u32, positions[disc], radii_of_discs).unwrap();
                 for a in [disc, (disc + 7) % count] {
                     let mut listed = lists.of(a as u32).to_vec();
                     listed.sort_unstable();

@@ -2,8 +2,8 @@
 //! partners at a time, and a queue that sorts only the next few events.
 //!
 //! - A disc has one event: its first collision, its wall, or the renewal of its list.
-//! - If a partner changes its motion, the disc is not predicted again at once, but when its event is due. By then most such discs
-//!   have found an earlier event.
+//! - A collision is stored with the disc that found it. Its partner keeps its own event, which may be later.
+//! - If a partner changes its motion, the disc is not predicted again at once, but when its event is due.
 //! - Discs are stored in memory in the order of their positions, and are sorted again now and then.
 //!
 //! Optimisations tried, with the rate relative to that before (2500 discs, ν = 0.1, 0.5 and 0.7; AVX-512, paired rounds, the same
@@ -20,7 +20,14 @@
 //! | times of expected events read only for partners that collide | 1.00 | |
 //! | events sorted as numbers of 128 bits | 1.00 | |
 //! | lists of 6, 7, 10 or 13 discs on average instead of 8 | 0.84 to 1.03 | |
+//! | a collision stored with the disc that found it alone | 1.08, 1.15, 1.20 | kept |
+//! | functions of an event inlined | 1.06, 1.05, 1.06 | kept |
+//! | registered positions in slots of cells, compared a row of cells at a time, instead of chains | 1.29, 1.12, 1.05 | kept |
+//! | the loop over events inside the function compiled for the instruction set; equal masses cancel | 0.95, 1.03, 1.05 | kept |
+//! | with 250 000 discs: prefetched cells of the next renewals, and times of the next partners | 1.12, 1.01, 1.01 | kept |
+//! | rows of 8 for lists of 4 or 5 discs on average | 1.02, 0.94, 0.82 | |
 
+mod cells;
 mod checkpoint;
 mod leaving;
 mod lists;
@@ -29,14 +36,16 @@ mod queue;
 
 use crate::domain::BoxSide;
 use crate::method::Snapshot;
-use crate::method::hard_disks::engine::{EngineError, EventEngine, ExecutedEvent};
+use crate::method::hard_disks::engine::{
+    EngineError, EventEngine, EventObserver, ExecutedEvent, MovingDiscs,
+};
 use crate::method::hard_disks::event::Arena;
 use crate::method::hard_disks::operations::Operations;
 use leaving::{free_path, leaving_time};
-use lists::DiscNeighbourLists;
+use lists::{DiscNeighbourLists, Radii};
 use queue::EventQueue;
 use stripmine_kernels::InstructionSet;
-use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_native};
+use stripmine_kernels::backend::{RegisterTask, Registers, Scalar, dispatch_native};
 use stripmine_kernels::flight::{EarliestCollision, FlyingDisc, MOST_PARTNERS, ROW_UNIT, earliest_collision};
 use stripmine_kernels::isa::AlignedColumn;
 
@@ -63,6 +72,15 @@ impl ExpectedEvent {
     const RENEWAL: ExpectedEvent = ExpectedEvent { with: RENEWAL, events: 0 };
 }
 
+/// Order of a disc's expected event among events at the same time: the numbers of both discs, the smaller one first, or the number
+/// of the disc and the code of the event.
+#[inline(always)]
+fn rank(numbers: &[u32], partners: &[ExpectedEvent], disc: u32) -> [u32; 2] {
+    let (own, with) = (numbers[disc as usize], partners[disc as usize].with);
+    let other = numbers.get(with as usize).copied().unwrap_or(with);
+    if with < WALL[0] { [own.min(other), own.max(other)] } else { [own, with] }
+}
+
 /// Fast engine with its discs.
 pub(crate) struct Fast {
     arena: Arena,
@@ -77,8 +95,8 @@ pub(crate) struct Fast {
     largest: f64,
     /// True if all radii are equal.
     alike: bool,
-    /// Distance ahead of its position at which a disc is registered (length).
-    flight: f64,
+    /// Mean free path (length).
+    free_path: f64,
     /// Times of the next events, and their partners.
     queue: EventQueue,
     partners: AlignedColumn<ExpectedEvent>,
@@ -109,7 +127,6 @@ impl Fast {
         let displacement_limit =
             displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).unwrap_or(0.1 * largest);
         let alike = discs.iter().all(|disc| disc.radius == largest);
-        let flight = 0.9 * displacement_limit.min(free_path(count as f64, largest, arena.domain.area()));
         let mut engine = Fast {
             lists: DiscNeighbourLists::new(arena.domain, 0, displacement_limit, largest, LISTED, 0),
             arena,
@@ -120,7 +137,7 @@ impl Fast {
             displacement_limit,
             largest,
             alike,
-            flight,
+            free_path: free_path(count as f64, largest, arena.domain.area()),
             queue: EventQueue::new(count),
             partners: AlignedColumn::filled(2, ExpectedEvent::RENEWAL, count),
             met: Box::new([f64::INFINITY; MOST_PARTNERS]),
@@ -139,12 +156,14 @@ impl Fast {
         self.sort(time);
         let count = self.discs.len();
         let mut stride = self.lists.stride();
-        let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.registered(disc, time)).collect();
         loop {
+            // A disc is registered within the displacement limit, which may have become smaller.
+            let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.registered(disc, time)).collect();
             let (domain, discs) = (self.arena.domain, &self.discs);
             self.lists =
                 DiscNeighbourLists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride);
-            let Err(full) = self.lists.begin(&places, |disc| discs[disc as usize].radius) else { break };
+            let radii = Radii { equal: self.alike.then_some(self.largest), discs };
+            let Err(full) = self.lists.begin(Scalar::default(), &places, radii) else { break };
             stride = self.lists.stride() + ROW_UNIT;
             if stride > MOST_PARTNERS {
                 if self.displacement_limit < 0.02 * self.largest {
@@ -183,14 +202,15 @@ impl Fast {
         }
     }
 
-    /// Predicts the next event of a disc at a time, and updates the discs that meet it before their expected event.
+    /// Predicts the next event of a disc at a time.
     #[inline(always)]
     fn predict<R: Registers<Lane = f64>>(&mut self, registers: R, disc: u32, now: f64) {
-        let Fast { arena, discs, numbers, lists, queue, partners, met, operations, .. } = self;
+        let Fast { arena, discs, numbers, lists, queue, partners, met, operations, alike, largest, .. } =
+            self;
         let (row, count) = lists.row(disc);
-        let found =
-            earliest_collision(registers, &arena.space, discs, queue.times(), (disc, row, count), now, met);
-        let EarliestCollision { time, partners: first, mut surprised } = found;
+        let radius = alike.then_some(*largest);
+        let found = earliest_collision(registers, &arena.space, discs, radius, (disc, row, count), now, met);
+        let EarliestCollision { time, partners: first } = found;
         operations.predictions += count as u64;
         operations.searches += 1;
         operations.queue_moves += 1;
@@ -222,34 +242,25 @@ impl Fast {
         if leaves < next {
             (next, with) = (leaves, RENEWAL);
         }
-        while surprised != 0 {
-            let lane = surprised.trailing_zeros() as usize;
-            let (other, time) = (row[lane], met[lane]);
-            let expected = partners[other as usize].with;
-            let is_before = time < queue.times()[other as usize]
-                || expected >= WALL[0]
-                || expected != disc && numbers[disc as usize] < numbers[expected as usize];
-            if is_before {
-                partners[other as usize] = ExpectedEvent { with: disc, events: own.events as u32 };
-                queue.set(other as usize, numbers[other as usize], time);
-                operations.queue_moves += 1;
-            }
-            surprised &= surprised - 1;
-        }
         let events = discs.get(with as usize).map_or(0, |other| other.events as u32);
         partners[disc as usize] = ExpectedEvent { with, events };
-        queue.set(disc as usize, numbers[disc as usize], next);
+        queue.set(disc, next, |disc| rank(numbers, partners, disc));
     }
 
     /// Renews the list of a disc at a time. Returns false if the list was full and all lists were rebuilt with more space.
-    fn renew(&mut self, disc: u32, time: f64) -> Result<bool, EngineError> {
+    #[inline(always)]
+    fn renew<R: Registers<Lane = f64>>(
+        &mut self,
+        registers: R,
+        disc: u32,
+        time: f64,
+    ) -> Result<bool, EngineError> {
         let place = self.registered(&self.discs[disc as usize], time);
         self.renewals += 1;
         self.operations.cell_updates += 1;
         let Fast { lists, discs, alike, largest, .. } = self;
-        // Equal radii need not be read.
-        let radius = |disc: u32| if *alike { *largest } else { discs[disc as usize].radius };
-        match lists.renew(disc, place, radius) {
+        let radii = Radii { equal: alike.then_some(*largest), discs };
+        match lists.renew(registers.single(), disc, place, radii) {
             Ok(()) => Ok(true),
             Err(_) => self.begin(time).map(|()| false),
         }
@@ -260,7 +271,8 @@ impl Fast {
     fn registered(&self, disc: &FlyingDisc, time: f64) -> [f64; 2] {
         let ([x, y], [u, v]) = (disc.at(&self.arena.space, time), disc.velocity_at(&self.arena.space, time));
         let speed = (u * u + v * v).sqrt();
-        let flight = if speed > 0.0 { self.flight / speed } else { 0.0 };
+        let flight = 0.9 * self.displacement_limit.min(self.free_path);
+        let flight = if speed > 0.0 { flight / speed } else { 0.0 };
         let ahead = [x + flight * u, y + flight * v];
         let domain = &self.arena.domain;
         domain.wrapped([0, 1].map(|axis| match domain.sides[axis] {
@@ -269,19 +281,22 @@ impl Fast {
         }))
     }
 
-    /// Implements [`EventEngine::next`] for a register type.
+    /// Implements [`EventEngine::run`] for a register type.
     #[inline(always)]
-    fn next_on<R: Registers<Lane = f64>>(
+    fn run_on<R: Registers<Lane = f64>>(
         &mut self,
         registers: R,
         until: f64,
         most: u64,
-    ) -> Result<Option<ExecutedEvent>, EngineError> {
+        observer: &mut EventObserver<'_>,
+    ) -> Result<bool, EngineError> {
         let most = most.saturating_mul(self.discs.len() as u64);
         loop {
-            let Some((time, first)) = self.queue.first(registers, &self.numbers) else { return Ok(None) };
+            let Fast { queue, numbers, partners, .. } = self;
+            let first = queue.first(registers, |disc| rank(numbers, partners, disc));
+            let Some((time, first)) = first else { return Ok(false) };
             if time > until {
-                return Ok(None);
+                return Ok(false);
             }
             if self.discs.len() > prefetch::OUT_OF_REACH {
                 self.prefetch_next_events();
@@ -294,9 +309,9 @@ impl Fast {
             let (changed, happened) = match with {
                 RENEWAL => {
                     if self.renewals >= most {
-                        return Ok(None);
+                        return Ok(false);
                     }
-                    if !self.renew(first, time)? {
+                    if !self.renew(registers, first, time)? {
                         continue;
                     }
                     ([first; 2], None)
@@ -327,19 +342,21 @@ impl Fast {
             for disc in changed.into_iter().take(if is_one { 1 } else { 2 }) {
                 self.predict(registers, disc, time);
             }
-            if happened.is_some() {
+            if let Some(happened) = happened {
                 self.time = time;
                 self.events += 1;
                 if self.events > self.sorted_until {
                     self.begin(time)?;
                 }
-                return Ok(happened);
+                if !observer(&happened, self) {
+                    return Ok(true);
+                }
             }
         }
     }
 }
 
-impl EventEngine for Fast {
+impl MovingDiscs for Fast {
     fn count(&self) -> usize {
         self.discs.len()
     }
@@ -347,14 +364,15 @@ impl EventEngine for Fast {
     fn disc(&self, number: u32) -> &FlyingDisc {
         &self.discs[self.places[number as usize] as usize]
     }
+}
 
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError> {
+impl EventEngine for Fast {
+    fn run(&mut self, until: f64, most: u64, observer: &mut EventObserver<'_>) -> Result<bool, EngineError> {
         let set = self.set;
-        let mut found = Ok(None);
-        let missing = |_| EngineError::NoInstructions(set);
-        dispatch_native(set, NextEventTask { engine: self, until, most, found: &mut found })
-            .map_err(missing)?;
-        found
+        let mut ended = Ok(false);
+        let task = EventLoopTask { engine: self, until, most, observer, ended: &mut ended };
+        dispatch_native(set, task).map_err(|_| EngineError::NoInstructions(set))?;
+        ended
     }
 
     fn rebuilds(&self) -> u64 {
@@ -389,18 +407,19 @@ pub(crate) fn displacement_limit(arena: &Arena, radii: impl Iterator<Item = f64>
     lists::displacement_limit(&arena.domain, radii, LISTED)
 }
 
-/// Task of the next event, compiled for an instruction set.
-struct NextEventTask<'e> {
+/// The loop over events, compiled for an instruction set.
+struct EventLoopTask<'e, 'o> {
     engine: &'e mut Fast,
     until: f64,
     most: u64,
-    found: &'e mut Result<Option<ExecutedEvent>, EngineError>,
+    observer: &'e mut EventObserver<'o>,
+    ended: &'e mut Result<bool, EngineError>,
 }
 
-impl RegisterTask<f64> for NextEventTask<'_> {
+impl RegisterTask<f64> for EventLoopTask<'_, '_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, registers: R) {
-        *self.found = self.engine.next_on(registers, self.until, self.most);
+        *self.ended = self.engine.run_on(registers, self.until, self.most, self.observer);
     }
 }
 

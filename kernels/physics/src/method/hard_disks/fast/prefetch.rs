@@ -12,27 +12,29 @@ impl Fast {
     #[inline(always)]
     pub(super) fn prefetch_next_events(&self) {
         let Fast { discs, lists, queue, partners, .. } = self;
-        if let Some(disc) = queue.upcoming_disc(AHEAD[0]) {
+        if let Some((_, disc)) = queue.upcoming(AHEAD[0]) {
             let disc = disc as usize;
             discs.prefetch(disc);
             partners.prefetch(disc);
             lists.prefetch(disc);
         }
-        if let Some(disc) = queue.upcoming_disc(AHEAD[1]) {
+        if let Some((time, disc)) = queue.upcoming(AHEAD[1]) {
+            if partners[disc as usize].with == RENEWAL {
+                lists.prefetch_cells(self.registered(&discs[disc as usize], time));
+            }
             let with = partners[disc as usize].with as usize;
             lists.prefetch(with);
+            queue.prefetch(with);
             for &other in lists.of(disc) {
                 discs.prefetch(other as usize);
-                queue.prefetch(other as usize);
             }
         }
-        if let Some(disc) = queue.upcoming_disc(AHEAD[2]) {
+        if let Some((_, disc)) = queue.upcoming(AHEAD[2]) {
             match partners[disc as usize].with {
                 RENEWAL => lists.of(disc).iter().for_each(|&other| lists.prefetch(other as usize)),
                 with if (with as usize) < discs.len() => {
                     for &other in lists.of(with) {
                         discs.prefetch(other as usize);
-                        queue.prefetch(other as usize);
                     }
                 }
                 _ => {}

@@ -3,7 +3,6 @@
 //! Only the next few events are sorted. All others are grouped, with a lower bound of the times in each group. The next event is
 //! therefore known long before the current one is finished, and the processor overlaps both.
 
-use std::hint::select_unpredictable;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::isa::{AlignedColumn, Vector};
 
@@ -58,20 +57,19 @@ impl TimeGroup {
 struct QueuedEvent {
     /// Time of the event.
     time: f64,
-    /// Number of the disc, and its index in memory.
-    number: u32,
+    /// Index of the disc in memory.
     slot: u32,
 }
 
 impl QueuedEvent {
     /// No event; sorts last.
-    const NONE: QueuedEvent = QueuedEvent { time: f64::INFINITY, number: u32::MAX, slot: 0 };
-
-    #[inline(always)]
-    fn is_before(&self, other: &QueuedEvent) -> bool {
-        self.time < other.time || self.time == other.time && self.number < other.number
-    }
+    const NONE: QueuedEvent = QueuedEvent { time: f64::INFINITY, slot: 0 };
 }
+
+/// Order of a disc's event among those at the same time.
+pub(super) trait Rank: Fn(u32) -> [u32; 2] {}
+
+impl<F: Fn(u32) -> [u32; 2]> Rank for F {}
 
 #[derive(Clone, Debug)]
 pub(crate) struct EventQueue {
@@ -125,14 +123,14 @@ impl EventQueue {
         unsafe { std::slice::from_raw_parts(groups.as_ptr().cast::<f64>(), groups.len() * GROUP) }
     }
 
-    /// Sets the time (at least 0) of a disc's next event; the disc is given by its index and its number.
+    /// Sets the time (at least 0) of a disc's next event; `rank` orders events at the same time.
     #[inline(always)]
-    pub(super) fn set(&mut self, slot: usize, number: u32, time: f64) {
+    pub(super) fn set(&mut self, disc: u32, time: f64, rank: impl Rank) {
+        let mut slot = disc as usize;
         self.levels[0][slot / GROUP].0[slot % GROUP] = time;
         if time < self.end {
-            return self.insert(QueuedEvent { time, number, slot: slot as u32 });
+            return self.insert(QueuedEvent { time, slot: disc }, rank);
         }
-        let mut slot = slot;
         for level in &mut self.levels[1..] {
             slot /= GROUP;
             let known = &mut level[slot / GROUP].0[slot % GROUP];
@@ -145,17 +143,20 @@ impl EventQueue {
 
     #[cold]
     #[inline(never)]
-    fn insert(&mut self, entry: QueuedEvent) {
-        let at = self.over + self.next[self.over..].partition_point(|other| other.is_before(&entry));
+    fn insert(&mut self, entry: QueuedEvent, rank: impl Rank) {
+        let is_before = |other: &QueuedEvent| {
+            other.time < entry.time || other.time == entry.time && rank(other.slot) < rank(entry.slot)
+        };
+        let at = self.over + self.next[self.over..].partition_point(is_before);
         self.next.insert(at, entry);
     }
 
-    /// Returns the time of the first event and the index of its disc; of several at one time, the one with the smallest number.
+    /// Returns the time of the first event and the index of its disc; of several at one time, the one with the smallest rank.
     #[inline(always)]
     pub(super) fn first<R: Registers<Lane = f64>>(
         &mut self,
         registers: R,
-        numbers: &[u32],
+        rank: impl Rank,
     ) -> Option<(f64, u32)> {
         loop {
             while let Some(&QueuedEvent { time, slot, .. }) = self.next.get(self.over) {
@@ -164,7 +165,7 @@ impl EventQueue {
                 }
                 self.over += 1;
             }
-            if !self.fill(registers, numbers) {
+            if !self.fill(registers, &rank) {
                 return None;
             }
         }
@@ -176,15 +177,15 @@ impl EventQueue {
         self.levels[0].prefetch(slot / GROUP);
     }
 
-    /// Index of the disc whose event is `ahead` events after the next one, if that is sorted already.
+    /// Time of the event that is `ahead` events after the next one, and index of its disc, if it is sorted already.
     #[inline(always)]
-    pub(crate) fn upcoming_disc(&self, ahead: usize) -> Option<u32> {
-        self.next.get(self.over + ahead).map(|entry| entry.slot)
+    pub(crate) fn upcoming(&self, ahead: usize) -> Option<(f64, u32)> {
+        self.next.get(self.over + ahead).map(|entry| (entry.time, entry.slot))
     }
 
     /// Sorts the next events. Returns false if none are left.
     #[inline(always)]
-    fn fill<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) -> bool {
+    fn fill<R: Registers<Lane = f64>>(&mut self, registers: R, rank: &impl Rank) -> bool {
         let top = self.levels.len() - 1;
         let begin = self.levels[top][0].smallest_from(registers, f64::NEG_INFINITY).max(self.end);
         if begin == f64::INFINITY {
@@ -193,7 +194,7 @@ impl EventQueue {
         self.end = (begin + self.span).max(begin.next_up());
         self.over = 0;
         self.find(registers);
-        self.sort(registers, numbers);
+        self.sort(registers, rank);
         match self.next.len() {
             few if few < self.wanted / 2 => self.span *= 1.5,
             many if many > 2 * self.wanted => self.span *= 0.7,
@@ -239,14 +240,14 @@ impl EventQueue {
     /// Sorts the found events. The index of each is the number of earlier ones, counted a register at a time without
     /// unpredictable branches.
     #[inline(always)]
-    fn sort<R: Registers<Lane = f64>>(&mut self, registers: R, numbers: &[u32]) {
+    fn sort<R: Registers<Lane = f64>>(&mut self, registers: R, rank: &impl Rank) {
         let mut times = std::mem::take(&mut self.times);
         times.clear();
         times.extend(self.found.iter().map(|&slot| self.times()[slot as usize]));
         times.resize(self.found.len().next_multiple_of(R::LANES), f64::INFINITY);
         self.next.clear();
         self.next.resize(self.found.len(), QueuedEvent::NONE);
-        let mut are_pairs = true;
+        let mut has_ties = false;
         for (&time, &slot) in times.iter().zip(&self.found) {
             let own = registers.splat(time);
             let mut before = 0;
@@ -255,31 +256,25 @@ impl EventQueue {
                 let some = unsafe { registers.load(times.as_ptr().add(begin)) };
                 before += registers.bits(some.less_than(own)).count_ones() as usize;
             }
-            // Both discs of a collision have the same time: the one found first takes the index. More at one time are rare.
-            before += usize::from(self.next[before].time == time);
+            // Events at one time take the indices in the order in which they were found, until they are ranked below.
             while self.next[before].time == time {
-                are_pairs = false;
+                has_ties = true;
                 before += 1;
             }
-            self.next[before] = QueuedEvent { time, number: numbers[slot as usize], slot };
+            self.next[before] = QueuedEvent { time, slot };
         }
         self.times = times;
-        if are_pairs {
-            self.order_pairs();
-        } else {
-            self.next.sort_unstable_by(|a, b| a.time.total_cmp(&b.time).then(a.number.cmp(&b.number)));
+        if has_ties {
+            self.order_ties(rank);
         }
     }
 
-    /// Orders pairs of equal times by their numbers.
-    #[inline(always)]
-    fn order_pairs(&mut self) {
-        for at in 1..self.next.len() {
-            let [a, b] = [self.next[at - 1], self.next[at]];
-            let [one, other] = [(a.number, a.slot), (b.number, b.slot)];
-            let is_wrong = b.is_before(&a);
-            (self.next[at - 1].number, self.next[at - 1].slot) = select_unpredictable(is_wrong, other, one);
-            (self.next[at].number, self.next[at].slot) = select_unpredictable(is_wrong, one, other);
+    /// Orders events at the same time by their ranks.
+    #[cold]
+    #[inline(never)]
+    fn order_ties(&mut self, rank: &impl Rank) {
+        for tied in self.next.chunk_by_mut(|a, b| a.time == b.time) {
+            tied.sort_unstable_by_key(|event| rank(event.slot));
         }
     }
 }
@@ -297,8 +292,8 @@ mod tests {
         let mut stream = Stream::new(7, RandomPurpose::Test, 0);
         for count in [1usize, 2, 16, 17, 300, 5000] {
             let mut times = vec![f64::INFINITY; count];
-            // Numbers are the indices in reverse order.
-            let numbers: Vec<u32> = (0..count as u32).rev().collect();
+            // Indices in reverse order.
+            let rank = |slot: u32| [count as u32 - slot, 0];
             let mut queue = EventQueue::new(count);
             let mut now = 0.0;
             for _ in 0..3000 {
@@ -309,13 +304,13 @@ mod tests {
                         1 => now,
                         _ => now + f64::from(stream.random_range(0..200)) / 16.0,
                     };
-                    queue.set(changed, numbers[changed], times[changed]);
+                    queue.set(changed as u32, times[changed], rank);
                 }
                 let first = (0..count)
                     .filter(|&slot| times[slot] < f64::INFINITY)
-                    .min_by(|&a, &b| (times[a], numbers[a]).partial_cmp(&(times[b], numbers[b])).unwrap());
+                    .min_by(|&a, &b| times[a].total_cmp(&times[b]).then(b.cmp(&a)));
                 let expected = first.map(|slot| (times[slot], slot as u32));
-                assert_eq!(queue.first(Scalar::default(), &numbers), expected);
+                assert_eq!(queue.first(Scalar::default(), rank), expected);
                 assert_eq!(&queue.times()[..count], times);
                 now = expected.map_or(now, |(time, _)| time);
             }

@@ -6,7 +6,7 @@ pub(crate) mod grid;
 mod half_space;
 mod tournament;
 
-use super::engine::{EngineError, EventEngine, EventPartner, ExecutedEvent};
+use super::engine::{EngineError, EventEngine, EventObserver, EventPartner, ExecutedEvent, MovingDiscs};
 use super::event::Arena;
 use super::operations::Operations;
 use crate::domain::BoxSide;
@@ -295,7 +295,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
     }
 }
 
-impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
+impl<C: DiscCells> MovingDiscs for ReferenceEngine<C> {
     fn count(&self) -> usize {
         self.discs.len()
     }
@@ -303,8 +303,10 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
     fn disc(&self, number: u32) -> &FlyingDisc {
         &self.discs[number as usize]
     }
+}
 
-    fn next(&mut self, until: f64, most: u64) -> Result<Option<ExecutedEvent>, EngineError> {
+impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
+    fn run(&mut self, until: f64, most: u64, observer: &mut EventObserver<'_>) -> Result<bool, EngineError> {
         loop {
             let first = self.tree.first();
             let event = self.events[first as usize];
@@ -312,7 +314,7 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
             let horizon = self.horizon();
             if event.time > until.min(horizon) {
                 if until <= horizon || self.remaps >= most {
-                    return Ok(None);
+                    return Ok(false);
                 }
                 // Rounding may put the horizon just before the last event.
                 self.remap(horizon.max(self.time))?;
@@ -322,7 +324,10 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
                 return Err(EngineError::BackInTime(first, event.time, self.time));
             }
             self.time = event.time;
-            return Ok(Some(self.execute_event(first, event)));
+            let executed = self.execute_event(first, event);
+            if !observer(&executed, self) {
+                return Ok(true);
+            }
         }
     }
 

@@ -1,0 +1,236 @@
+//! Cells of the registered positions: slots side by side, so that a row of three cells is compared in two registers.
+//!
+//! A slot stores the position relative to the centre of its cell in single precision: its error is below 1e-7 of an edge in a box of
+//! any size. Across a periodic side the neighbouring cell is the first or last one, and relative positions need no correction.
+
+use crate::domain::{BoxSide, Domain};
+use stripmine_kernels::backend::Registers;
+use stripmine_kernels::isa::{AlignedColumn, Vector};
+
+/// Maximum number of neighbours found around a disc, more than a list holds.
+pub(super) const FOUND: usize = 128;
+
+/// Slots of a cell. On average a cell has three discs.
+const SLOTS: usize = 8;
+/// Slots of three cells side by side.
+const ABREAST: usize = 3 * SLOTS;
+/// Slots of three cells in whole registers.
+const LOADED: usize = 32;
+/// Marks an empty slot.
+const EMPTY: u32 = u32::MAX;
+/// Position in an empty slot: far from any disc, and its square is finite.
+const FAR: f32 = 1e18;
+/// Relative margin for positions in single precision.
+const MARGIN: f64 = 4e-6;
+
+/// Cells of the registered positions, row by row. A row begins and ends with a copy of the cell at its other end. Cells wrap around
+/// the grid, except along a closed side, so an infinite side needs no more cells.
+#[derive(Clone, Debug)]
+pub(super) struct RegistrationCells {
+    counts: [usize; 2],
+    edge: [f64; 2],
+    /// True for an axis along which the grid wraps around.
+    wraps: [bool; 2],
+    /// True if discs in neighbouring cells may be far apart, because an infinite side wraps around the grid.
+    is_approximate: bool,
+    /// Square of the distance within which discs are found (length²).
+    near: f32,
+    /// Relative positions in the slots (length).
+    x: AlignedColumn<f32>,
+    y: AlignedColumn<f32>,
+    /// Discs in the slots.
+    discs: AlignedColumn<u32>,
+    /// Discs of each row of cells that found no slot.
+    crowded: Vec<Vec<(u32, [f64; 2])>>,
+    /// Offset of the cell of each slot of three cells (length).
+    offsets: Offsets,
+}
+
+/// Aligned row of offsets.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+struct Offsets([f32; LOADED]);
+
+/// Cell of a position.
+struct CellPosition {
+    /// Column and row.
+    cell: [usize; 2],
+    /// Position relative to the centre of the cell (length).
+    relative: [f32; 2],
+}
+
+impl RegistrationCells {
+    /// Creates empty cells that find discs within `sight` (length).
+    pub(super) fn new(domain: &Domain, count: usize, sight: f64) -> RegistrationCells {
+        let most = (count as f64).sqrt().max(8.0);
+        let counts = [0, 1].map(|axis| match domain.sides[axis] {
+            BoxSide::Open | BoxSide::Flat => most as usize,
+            BoxSide::Periodic(side) | BoxSide::Closed(side) => ((side / sight) as usize).max(1),
+        });
+        let edge = [0, 1].map(|axis| match domain.sides[axis] {
+            BoxSide::Open | BoxSide::Flat => sight,
+            BoxSide::Periodic(side) | BoxSide::Closed(side) => side / counts[axis] as f64,
+        });
+        let slots = (counts[0] + 2) * counts[1] * SLOTS + LOADED;
+        let mut offsets = [0.0; LOADED];
+        for (slot, offset) in offsets.iter_mut().enumerate().take(ABREAST) {
+            *offset = (((slot / SLOTS) as f64 - 1.0) * edge[0]) as f32;
+        }
+        RegistrationCells {
+            counts,
+            edge,
+            wraps: [0, 1].map(|axis| !matches!(domain.sides[axis], BoxSide::Closed(_))),
+            is_approximate: (0..2).any(|axis| matches!(domain.sides[axis], BoxSide::Open | BoxSide::Flat)),
+            near: (sight * sight * (1.0 + MARGIN)) as f32,
+            x: AlignedColumn::filled(12, FAR, slots),
+            y: AlignedColumn::filled(13, FAR, slots),
+            discs: AlignedColumn::filled(14, EMPTY, slots),
+            crowded: vec![vec![]; counts[1]],
+            offsets: Offsets(offsets),
+        }
+    }
+
+    /// True if discs may be found that are far away.
+    #[inline(always)]
+    pub(super) fn is_approximate(&self) -> bool {
+        self.is_approximate
+    }
+
+    /// Finds all discs within sight of a position inside the box, and perhaps some that are slightly farther. Returns their number; none
+    /// if there are too many.
+    #[inline(always)]
+    pub(super) fn find<R: Registers<Lane = f32>>(
+        &self,
+        registers: R,
+        domain: &Domain,
+        position: [f64; 2],
+        found: &mut [u32; FOUND],
+    ) -> Option<usize> {
+        let CellPosition { cell: [column, row], relative: [own_x, own_y] } = self.locate(domain, position);
+        let (near, x) = (registers.splat(self.near), registers.splat(own_x));
+        let mut count = 0;
+        for step in [-1, 0, 1] {
+            let Some(row) = self.neighbouring_row(row, step) else { continue };
+            let first = self.slot([column, row]) - SLOTS;
+            let y = registers.splat(own_y - step as f32 * self.edge[1] as f32);
+            let mut bits = 0;
+            for begin in (0..ABREAST).step_by(R::LANES) {
+                // SAFETY: a row of cells is followed by another one or by as many slots as are loaded, and there are as many offsets.
+                let [offset, there_x, there_y] = unsafe {
+                    [
+                        registers.load(self.offsets.0.as_ptr().add(begin)),
+                        registers.load(self.x.as_ptr().add(first + begin)),
+                        registers.load(self.y.as_ptr().add(first + begin)),
+                    ]
+                };
+                let (dx, dy) = ((there_x + offset) - x, there_y - y);
+                bits |= registers.bits((dx * dx + dy * dy).less_than(near)) << begin;
+            }
+            bits &= (1 << ABREAST) - 1;
+            if count + ABREAST + self.crowded[row].len() > FOUND {
+                return None;
+            }
+            while bits != 0 {
+                found[count] = self.discs[first + bits.trailing_zeros() as usize];
+                count += 1;
+                bits &= bits - 1;
+            }
+            for &(disc, there) in &self.crowded[row] {
+                let [dx, dy] = domain.displacement(position, there);
+                found[count] = disc;
+                count += usize::from((dx * dx + dy * dy) as f32 <= self.near);
+            }
+        }
+        Some(count)
+    }
+
+    /// Prefetches the cache lines that a search around a position reads.
+    #[inline(always)]
+    pub(super) fn prefetch(&self, domain: &Domain, position: [f64; 2]) {
+        let CellPosition { cell: [column, row], .. } = self.locate(domain, position);
+        for row in [-1, 0, 1].into_iter().filter_map(|step| self.neighbouring_row(row, step)) {
+            let first = self.slot([column, row]) - SLOTS;
+            for slot in [first, first + ABREAST - 1] {
+                self.x.prefetch(slot);
+                self.y.prefetch(slot);
+                self.discs.prefetch(slot);
+            }
+        }
+    }
+
+    /// Adds a disc at a position inside the box.
+    #[inline(always)]
+    pub(super) fn add(&mut self, domain: &Domain, disc: u32, position: [f64; 2]) {
+        let CellPosition { cell, relative } = self.locate(domain, position);
+        match self.slot_of(cell, EMPTY) {
+            Some(slot) => self.set(cell, slot, disc, relative),
+            None => self.crowded[cell[1]].push((disc, position)),
+        }
+    }
+
+    /// Removes a disc that was added at a position.
+    #[inline(always)]
+    pub(super) fn remove(&mut self, domain: &Domain, disc: u32, position: [f64; 2]) {
+        let CellPosition { cell, .. } = self.locate(domain, position);
+        match self.slot_of(cell, disc) {
+            Some(slot) => self.set(cell, slot, EMPTY, [FAR; 2]),
+            None => self.crowded[cell[1]].retain(|&(other, _)| other != disc),
+        }
+    }
+
+    #[inline(always)]
+    fn locate(&self, domain: &Domain, position: [f64; 2]) -> CellPosition {
+        let [column, row] = [0, 1].map(|axis| {
+            let (count, edge, wraps) = (self.counts[axis], self.edge[axis], self.wraps[axis]);
+            // No position is below the origin of the box.
+            let along = position[axis] - domain.origin[axis];
+            let at = (along / edge) as usize;
+            let at = if at >= count && !wraps { count - 1 } else { at };
+            let relative = (along - (at as f64 + 0.5) * edge) as f32;
+            // Usually inside.
+            (if at < count { at } else { at % count }, relative)
+        });
+        CellPosition { cell: [column.0, row.0], relative: [column.1, row.1] }
+    }
+
+    /// Row next to another one, if there is one.
+    #[inline(always)]
+    fn neighbouring_row(&self, row: usize, step: isize) -> Option<usize> {
+        let (count, next) = (self.counts[1] as isize, row as isize + step);
+        if (0..count).contains(&next) {
+            return Some(next as usize);
+        }
+        self.wraps[1].then(|| next.rem_euclid(count) as usize)
+    }
+
+    /// First slot of a cell.
+    #[inline(always)]
+    fn slot(&self, [column, row]: [usize; 2]) -> usize {
+        (row * (self.counts[0] + 2) + column + 1) * SLOTS
+    }
+
+    /// Slot of a cell that holds a disc or is empty.
+    #[inline(always)]
+    fn slot_of(&self, cell: [usize; 2], disc: u32) -> Option<usize> {
+        let first = self.slot(cell);
+        let slots = &self.discs[first..first + SLOTS];
+        let bits = (0..SLOTS).fold(0_u32, |bits, slot| bits | u32::from(slots[slot] == disc) << slot);
+        (bits != 0).then(|| bits.trailing_zeros() as usize)
+    }
+
+    /// Writes a slot of a cell, and of its copy at the other end of the row.
+    #[inline(always)]
+    fn set(&mut self, cell: [usize; 2], slot: usize, disc: u32, [x, y]: [f32; 2]) {
+        let at = self.slot(cell) + slot;
+        (self.x[at], self.y[at], self.discs[at]) = (x, y, disc);
+        let [column, _] = cell;
+        if self.wraps[0] && (column == 0 || column + 1 == self.counts[0]) {
+            let length = self.counts[0] * SLOTS;
+            for (end, copy) in [(0, at + length), (self.counts[0] - 1, at - length.min(at))] {
+                if column == end {
+                    (self.x[copy], self.y[copy], self.discs[copy]) = (x, y, disc);
+                }
+            }
+        }
+    }
+}
