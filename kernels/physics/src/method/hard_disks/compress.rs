@@ -1,6 +1,6 @@
 //! Dense starts by the Lubachevsky–Stillinger method: discs move and collide while their radii grow to the final values.
 
-use super::engine::{EventEngine, MovingDiscs};
+use super::engine::{EventEngine, FlyingDiscs};
 use super::event::{Arena, CollisionLaw};
 use super::fast::{Fast, displacement_limit};
 use crate::domain::Domain;

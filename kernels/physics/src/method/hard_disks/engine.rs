@@ -7,7 +7,7 @@ use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::FlyingDisc;
 
 /// Discs of an engine, numbered in the order of their ids.
-pub(crate) trait MovingDiscs {
+pub(crate) trait FlyingDiscs {
     /// Number of discs.
     fn count(&self) -> usize;
 
@@ -16,10 +16,10 @@ pub(crate) trait MovingDiscs {
 }
 
 /// Receives each event with the discs after it, and returns true if the engine shall go on.
-pub(crate) type EventObserver<'o> = dyn FnMut(&ExecutedEvent, &dyn MovingDiscs) -> bool + 'o;
+pub(crate) type EventObserver<'o> = dyn FnMut(&ExecutedEvent, &dyn FlyingDiscs) -> bool + 'o;
 
 /// Event-driven engine, which owns the moving discs.
-pub(crate) trait EventEngine: MovingDiscs + Send {
+pub(crate) trait EventEngine: FlyingDiscs + Send {
     /// Executes events until the observer stops the engine, and returns true then. Returns false as soon as no event is left that comes no
     /// later than `until` (time) and before all discs have had their partners searched `most` times.
     ///

@@ -1,6 +1,6 @@
 //! Oracle for all engines: brute-force search over all pairs and walls for each event.
 
-use super::engine::{EventEngine, EventPartner, ExecutedEvent, MovingDiscs};
+use super::engine::{EventEngine, EventPartner, ExecutedEvent, FlyingDiscs};
 use super::event::{Arena, CollisionLaw, ThermalWall};
 use super::fast::{Fast, displacement_limit};
 use super::floor::Floor;

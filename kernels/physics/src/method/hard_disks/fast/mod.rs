@@ -37,7 +37,7 @@ mod queue;
 use crate::domain::BoxSide;
 use crate::method::Snapshot;
 use crate::method::hard_disks::engine::{
-    EngineError, EventEngine, EventObserver, ExecutedEvent, MovingDiscs,
+    EngineError, EventEngine, EventObserver, ExecutedEvent, FlyingDiscs,
 };
 use crate::method::hard_disks::event::Arena;
 use crate::method::hard_disks::operations::Operations;
@@ -356,7 +356,7 @@ impl Fast {
     }
 }
 
-impl MovingDiscs for Fast {
+impl FlyingDiscs for Fast {
     fn count(&self) -> usize {
         self.discs.len()
     }

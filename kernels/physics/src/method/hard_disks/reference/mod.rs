@@ -6,7 +6,7 @@ pub(crate) mod grid;
 mod half_space;
 mod tournament;
 
-use super::engine::{EngineError, EventEngine, EventObserver, EventPartner, ExecutedEvent, MovingDiscs};
+use super::engine::{EngineError, EventEngine, EventObserver, EventPartner, ExecutedEvent, FlyingDiscs};
 use super::event::Arena;
 use super::operations::Operations;
 use crate::domain::BoxSide;
@@ -295,7 +295,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
     }
 }
 
-impl<C: DiscCells> MovingDiscs for ReferenceEngine<C> {
+impl<C: DiscCells> FlyingDiscs for ReferenceEngine<C> {
     fn count(&self) -> usize {
         self.discs.len()
     }
