@@ -6,8 +6,8 @@
 //! - If a partner changes its motion, the disc is not predicted again at once, but when its event is due.
 //! - Discs are stored in memory in the order of their positions, and are sorted again now and then.
 //!
-//! Optimisations tried, with the rate relative to that before (2500 discs, ν = 0.1, 0.5 and 0.7; AVX-512, paired rounds, the same
-//! events to the bit):
+//! Optimisations tried, with the rate relative to that before (2500 discs, ν = 0.1, 0.5 and 0.7; AVX-512, in the last six rows
+//! AVX2; paired rounds, the same events to the bit):
 //!
 //! | | rate | |
 //! |---|---|---|
