@@ -85,10 +85,10 @@ impl MpiRank {
             }
             looks = looks.saturating_add(1);
             // Other ranks need this core if there are more ranks than cores; MPI's own waiting would keep it.
-            match looks {
-                ..=POLLS_BUSY => {}
-                ..=POLLS_YIELDING => thread::yield_now(),
-                _ => thread::sleep(MOMENT),
+            if looks > POLLS_YIELDING {
+                thread::sleep(MOMENT);
+            } else if looks > POLLS_BUSY {
+                thread::yield_now();
             }
         }
     }
