@@ -53,7 +53,7 @@ impl Domain {
         matches!(self.sides[axis], BoxSide::Periodic(_))
     }
 
-    /// Shortest periodic side in the plane (length); infinite if there is none.
+    /// Shortest periodic side in the plane (length); infinite without periodic sides.
     pub(crate) fn shortest_period(&self) -> f64 {
         let periodic = (0..2).filter(|&axis| self.is_periodic(axis)).map(|axis| self.length(axis));
         periodic.fold(f64::INFINITY, f64::min)

@@ -219,6 +219,41 @@ fn engines_match_in_a_cluster() {
     assert!(compare_with_oracle(arena, &discs, 600) > 0);
 }
 
+/// Small discs among large ones: more than a hundred are within sight of a large disc, and cells have many slots.
+#[test]
+fn fast_engine_matches_for_wide_sizes() {
+    let domain = Domain::planar([0.0; 2], [40.0; 2], [true; 2]);
+    let mut stream = Stream::new(9, RandomPurpose::Test, 3);
+    let disc = |position: [f64; 2], radius: f64, velocity: [f64; 2]| FlyingDisc {
+        position,
+        velocity,
+        time: 0.0,
+        radius,
+        mass: radius * radius,
+        events: 0,
+    };
+    let mut discs: Vec<FlyingDisc> =
+        [[8.0, 8.0], [28.0, 24.0]].map(|position| disc(position, 3.0, [0.1, -0.2])).to_vec();
+    for at in 0..1600 {
+        let position = [at / 40, at % 40].map(|along| 0.5 + f64::from(along));
+        let velocity = [0, 1].map(|_| stream.random_range(-1.0..1.0));
+        let small = disc(position, 0.15, velocity);
+        if discs[..2].iter().all(|large| domain.distance(large.position, position) > 3.2) {
+            discs.push(small);
+        }
+    }
+    let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
+    for set in InstructionSet::available() {
+        let (mut oracle, mut now) = (discs.clone(), 0.0);
+        let mut engine = Fast::new(arena, discs.clone(), set, 0.0).unwrap();
+        for number in 0..60 {
+            let event = brute_force_event(&arena, &mut oracle, now);
+            now = event.time;
+            assert_eq!(engine.next(f64::INFINITY, u64::MAX).unwrap(), Some(event), "event {number}, {set:?}");
+        }
+    }
+}
+
 /// Both engines find the same 10⁶ events: at three densities, with polydisperse discs that lose energy, and under gravity.
 #[test]
 #[ignore = "long: cargo test --workspace --lib -- --ignored engines_agree"]

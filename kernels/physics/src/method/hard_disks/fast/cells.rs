@@ -10,12 +10,14 @@ use stripmine_kernels::isa::{AlignedColumn, Vector};
 /// Maximum number of neighbours found around a disc, more than a list holds.
 pub(super) const FOUND: usize = 128;
 
-/// Slots of a cell. On average a cell has three discs.
+/// Slots of a cell are a multiple of this. On average a cell of equal discs has three of them.
 const SLOTS: usize = 8;
-/// Slots of three cells side by side.
+/// Slots that are compared together: those of three cells of equal discs.
 const ABREAST: usize = 3 * SLOTS;
-/// Slots of three cells in whole registers.
-const LOADED: usize = 32;
+/// Slots beyond those of three cells that whole registers load.
+const BEYOND: usize = 8;
+/// Slots for each disc that a cell has on average.
+const SPARE: f64 = 2.0;
 /// Marks an empty slot.
 const EMPTY: u32 = u32::MAX;
 /// Position in an empty slot: far from any disc, and its square is finite.
@@ -29,6 +31,8 @@ const MARGIN: f64 = 4e-6;
 pub(super) struct RegistrationCells {
     counts: [usize; 2],
     edge: [f64; 2],
+    /// Slots of a cell: many if small discs are in cells of large ones.
+    slots: usize,
     /// True for an axis along which the grid wraps around.
     wraps: [bool; 2],
     /// True if discs in neighbouring cells may be far apart, because an infinite side wraps around the grid.
@@ -43,13 +47,8 @@ pub(super) struct RegistrationCells {
     /// Discs of each row of cells that found no slot.
     crowded: Vec<Vec<(u32, [f64; 2])>>,
     /// Offset of the cell of each slot of three cells (length).
-    offsets: Offsets,
+    offsets: AlignedColumn<f32>,
 }
-
-/// Aligned row of offsets.
-#[derive(Clone, Debug)]
-#[repr(align(64))]
-struct Offsets([f32; LOADED]);
 
 /// Cell of a position.
 struct CellPosition {
@@ -71,22 +70,22 @@ impl RegistrationCells {
             BoxSide::Open | BoxSide::Flat => sight,
             BoxSide::Periodic(side) | BoxSide::Closed(side) => side / counts[axis] as f64,
         });
-        let slots = (counts[0] + 2) * counts[1] * SLOTS + LOADED;
-        let mut offsets = [0.0; LOADED];
-        for (slot, offset) in offsets.iter_mut().enumerate().take(ABREAST) {
-            *offset = (((slot / SLOTS) as f64 - 1.0) * edge[0]) as f32;
-        }
+        let mean = count as f64 / (counts[0] * counts[1]) as f64;
+        let slots = ((SPARE * mean) as usize).max(1).next_multiple_of(SLOTS);
+        let all = (counts[0] + 2) * counts[1] * slots + BEYOND;
+        let offsets = (0..3 * slots + BEYOND).map(|slot| (((slot / slots) as f64 - 1.0) * edge[0]) as f32);
         RegistrationCells {
             counts,
             edge,
             wraps: [0, 1].map(|axis| !matches!(domain.sides[axis], BoxSide::Closed(_))),
             is_approximate: (0..2).any(|axis| matches!(domain.sides[axis], BoxSide::Open | BoxSide::Flat)),
             near: (sight * sight * (1.0 + MARGIN)) as f32,
-            x: AlignedColumn::filled(12, FAR, slots),
-            y: AlignedColumn::filled(13, FAR, slots),
-            discs: AlignedColumn::filled(14, EMPTY, slots),
+            slots,
+            x: AlignedColumn::filled(12, FAR, all),
+            y: AlignedColumn::filled(13, FAR, all),
+            discs: AlignedColumn::filled(14, EMPTY, all),
             crowded: vec![vec![]; counts[1]],
-            offsets: Offsets(offsets),
+            offsets: AlignedColumn::new(15, offsets),
         }
     }
 
@@ -96,14 +95,15 @@ impl RegistrationCells {
         self.is_approximate
     }
 
-    /// Finds all discs within sight of a position inside the box, and perhaps some that are slightly farther. Returns their number; none
-    /// if there are too many.
+    /// Finds the discs within sight of a position inside the box, and perhaps some that are slightly farther, that pass a test. Returns
+    /// their number; none if there are too many.
     #[inline(always)]
     pub(super) fn find<R: Registers<Lane = f32>>(
         &self,
         registers: R,
         domain: &Domain,
         position: [f64; 2],
+        is_near: impl Fn(u32) -> bool,
         found: &mut [u32; FOUND],
     ) -> Option<usize> {
         let CellPosition { cell: [column, row], relative: [own_x, own_y] } = self.locate(domain, position);
@@ -111,34 +111,40 @@ impl RegistrationCells {
         let mut count = 0;
         for step in [-1, 0, 1] {
             let Some(row) = self.neighbouring_row(row, step) else { continue };
-            let first = self.slot([column, row]) - SLOTS;
+            let first = self.slot([column, row]) - self.slots;
             let y = registers.splat(own_y - step as f32 * self.edge[1] as f32);
-            let mut bits = 0;
-            for begin in (0..ABREAST).step_by(R::LANES) {
-                // SAFETY: a row of cells is followed by another one or by as many slots as are loaded, and there are as many offsets.
-                let [offset, there_x, there_y] = unsafe {
-                    [
-                        registers.load(self.offsets.0.as_ptr().add(begin)),
-                        registers.load(self.x.as_ptr().add(first + begin)),
-                        registers.load(self.y.as_ptr().add(first + begin)),
-                    ]
-                };
-                let (dx, dy) = ((there_x + offset) - x, there_y - y);
-                bits |= registers.bits((dx * dx + dy * dy).less_than(near)) << begin;
-            }
-            bits &= (1 << ABREAST) - 1;
-            if count + ABREAST + self.crowded[row].len() > FOUND {
-                return None;
-            }
-            while bits != 0 {
-                found[count] = self.discs[first + bits.trailing_zeros() as usize];
-                count += 1;
-                bits &= bits - 1;
+            for start in (0..3 * self.slots).step_by(ABREAST) {
+                let mut bits = 0;
+                for begin in (start..start + ABREAST).step_by(R::LANES) {
+                    // SAFETY: a row of cells is followed by another one or by as many slots as are loaded, and there are as many
+                    // offsets: a register has at most sixteen lanes.
+                    let [offset, there_x, there_y] = unsafe {
+                        [
+                            registers.load(self.offsets.as_ptr().add(begin)),
+                            registers.load(self.x.as_ptr().add(first + begin)),
+                            registers.load(self.y.as_ptr().add(first + begin)),
+                        ]
+                    };
+                    let (dx, dy) = ((there_x + offset) - x, there_y - y);
+                    bits |= registers.bits((dx * dx + dy * dy).less_than(near)) << (begin - start);
+                }
+                bits &= (1 << ABREAST) - 1;
+                if count + ABREAST > FOUND {
+                    return None;
+                }
+                while bits != 0 {
+                    found[count] = self.discs[first + start + bits.trailing_zeros() as usize];
+                    count += usize::from(is_near(found[count]));
+                    bits &= bits - 1;
+                }
             }
             for &(disc, there) in &self.crowded[row] {
+                if count == FOUND {
+                    return None;
+                }
                 let [dx, dy] = domain.displacement(position, there);
                 found[count] = disc;
-                count += usize::from((dx * dx + dy * dy) as f32 <= self.near);
+                count += usize::from((dx * dx + dy * dy) as f32 <= self.near && is_near(disc));
             }
         }
         Some(count)
@@ -149,7 +155,7 @@ impl RegistrationCells {
     pub(super) fn prefetch(&self, domain: &Domain, position: [f64; 2]) {
         let CellPosition { cell: [column, row], .. } = self.locate(domain, position);
         for row in [-1, 0, 1].into_iter().filter_map(|step| self.neighbouring_row(row, step)) {
-            let first = self.slot([column, row]) - SLOTS;
+            let first = self.slot([column, row]) - self.slots;
             for slot in [first, first + ABREAST - 1] {
                 self.x.prefetch(slot);
                 self.y.prefetch(slot);
@@ -206,14 +212,18 @@ impl RegistrationCells {
     /// First slot of a cell.
     #[inline(always)]
     fn slot(&self, [column, row]: [usize; 2]) -> usize {
-        (row * (self.counts[0] + 2) + column + 1) * SLOTS
+        (row * (self.counts[0] + 2) + column + 1) * self.slots
     }
 
     /// Slot of a cell that holds a disc or is empty.
     #[inline(always)]
     fn slot_of(&self, cell: [usize; 2], disc: u32) -> Option<usize> {
         let first = self.slot(cell);
-        let slots = &self.discs[first..first + SLOTS];
+        let slots = &self.discs[first..first + self.slots];
+        if slots.len() > SLOTS {
+            return slots.iter().position(|&other| other == disc);
+        }
+        // No branch for each slot: the index is unpredictable.
         let bits = (0..SLOTS).fold(0_u32, |bits, slot| bits | u32::from(slots[slot] == disc) << slot);
         (bits != 0).then(|| bits.trailing_zeros() as usize)
     }
@@ -225,7 +235,7 @@ impl RegistrationCells {
         (self.x[at], self.y[at], self.discs[at]) = (x, y, disc);
         let [column, _] = cell;
         if self.wraps[0] && (column == 0 || column + 1 == self.counts[0]) {
-            let length = self.counts[0] * SLOTS;
+            let length = self.counts[0] * self.slots;
             for (end, copy) in [(0, at + length), (self.counts[0] - 1, at - length.min(at))] {
                 if column == end {
                     (self.x[copy], self.y[copy], self.discs[copy]) = (x, y, disc);

@@ -178,19 +178,18 @@ impl DiscNeighbourLists {
     ) -> Result<(), u32> {
         self.positions[disc as usize] = position;
         let mut found = [0; FOUND];
-        let mut count = self.cells.find(registers, &self.domain, position, &mut found).ok_or(disc)?;
-        if self.cells.is_approximate() || radii.equal.is_none() {
+        let count = if self.cells.is_approximate() || radii.equal.is_none() {
             let reach = radii.of(disc) + 2.0 * self.displacement_limit;
-            let mut near = 0;
-            for at in 0..count {
-                let other = found[at];
+            let is_near = |other: u32| {
                 let [dx, dy] = self.domain.displacement(position, self.positions[other as usize]);
                 let reach = (reach + radii.of(other)) * (1.0 + 1e-9);
-                found[near] = other;
-                near += usize::from(dx * dx + dy * dy < reach * reach);
-            }
-            count = near;
-        }
+                dx * dx + dy * dy < reach * reach
+            };
+            self.cells.find(registers, &self.domain, position, is_near, &mut found)
+        } else {
+            self.cells.find(registers, &self.domain, position, |_| true, &mut found)
+        };
+        let count = count.ok_or(disc)?;
         for &other in &found[..count] {
             self.add(disc, other)?;
             self.add(other, disc)?;
