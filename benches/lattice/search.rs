@@ -9,12 +9,12 @@ use std::hint::black_box;
 use std::time::Duration;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
-use stripmine_kernels::sweep::fast::{CellGrid, Finder, SENTINELS, SearchCursor, Sectors};
+use stripmine_kernels::sweep::fast::{CellGrid, Finder, RecordEntry, SearchCursor, Sectors, StateRecords};
 use stripmine_physics::method::lattice_md::{assemble, model};
 use stripmine_physics::particles::Particles;
 
-/// Cells and positions in them, in the order of the cells, with sentinels behind.
-fn settled(particles: &Particles, grid: &CellGrid) -> (Vec<[usize; 2]>, [Vec<f64>; 2]) {
+/// Cells and records of the discs, in the order of the cells.
+fn settled(particles: &Particles, grid: &CellGrid) -> (Vec<[usize; 2]>, StateRecords<f64>) {
     let mut discs: Vec<([usize; 2], [f64; 2])> = particles
         .all()
         .iter()
@@ -26,15 +26,17 @@ fn settled(particles: &Particles, grid: &CellGrid) -> (Vec<[usize; 2]>, [Vec<f64
         })
         .collect();
     discs.sort_by_key(|(cell, _)| (cell[1], cell[0]));
-    let column =
-        |axis: usize| discs.iter().map(|disc| disc.1[axis]).chain([0.0; SENTINELS]).collect::<Vec<f64>>();
-    (discs.iter().map(|disc| disc.0).collect(), [column(0), column(1)])
+    let mut records = StateRecords::zeros(0, discs.len(), [false; 2], 1.0);
+    for axis in 0..2 {
+        records.fill(RecordEntry::of(axis, 0), |disc| discs.get(disc).map_or(0.0, |disc| disc.1[axis]));
+    }
+    (discs.iter().map(|disc| disc.0).collect(), records)
 }
 
-fn all<F: Finder<f64, f64>>(finder: &F, positions: [&[f64]; 2], found: &mut F::Found) {
+fn all<F: Finder<f64, f64>>(finder: &F, discs: &StateRecords<f64>, found: &mut F::Found) {
     let (rows, mut cursor) = (finder.rows().count, SearchCursor::at(0));
     while cursor.row() < rows {
-        finder.find(positions, 0..rows, &mut cursor, found, InstructionSet::best()).expect("available");
+        finder.find(discs, 0..rows, &mut cursor, found, InstructionSet::best()).expect("available");
         black_box(&*found);
     }
 }
@@ -48,9 +50,9 @@ pub fn search(criterion: &mut Criterion) {
         let count = particles.len();
 
         let mut occupancy = Occupancy::new(model.shape, model.frame, count, 1.0, false);
-        let (cells, [x, y]) = settled(&particles, &occupancy.grid());
+        let (cells, records) = settled(&particles, &occupancy.grid());
         for (disc, &cell) in cells.iter().enumerate() {
-            occupancy.enter(disc, cell, [x[disc], y[disc]], 0.5).expect("one disc a cell");
+            occupancy.enter(disc, cell, records.position(disc), 0.5).expect("one disc a cell");
         }
         occupancy.repeat_images();
         let codes = Codes::<f64>::new(&occupancy, model.frame);
@@ -61,7 +63,7 @@ pub fn search(criterion: &mut Criterion) {
             CellGrid::new(domain.corner(), domain.lengths(), domain.periodic(), 1.0, f64::INFINITY, count)
                 .expect("a large box");
         let mut sectors = Sectors::new(grid, count, 1.0);
-        let (in_sectors, [sx, sy]) = settled(&particles, &grid);
+        let (in_sectors, of_sectors) = settled(&particles, &grid);
         in_sectors.iter().enumerate().for_each(|(disc, &cell)| sectors.enter(disc, cell));
         sectors.arrange(|disc| disc);
 
@@ -70,11 +72,11 @@ pub fn search(criterion: &mut Criterion) {
         group.measurement_time(Duration::from_millis(500)).warm_up_time(Duration::from_millis(100));
         group.bench_function("lattice", |bencher| {
             let mut found = Default::default();
-            bencher.iter(|| all(&lattice, [&x, &y], &mut found));
+            bencher.iter(|| all(&lattice, &records, &mut found));
         });
         group.bench_function("sectors", |bencher| {
             let mut found = Default::default();
-            bencher.iter(|| all(&sectors, [&sx, &sy], &mut found));
+            bencher.iter(|| all(&sectors, &of_sectors, &mut found));
         });
         group.finish();
     }

@@ -5,7 +5,9 @@ use stripmine_kernels::backend::Registers;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 use stripmine_kernels::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme};
 use stripmine_kernels::noise::{NoiseSource, RandomPurpose, draw};
-use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, EquationOfMotion};
+use stripmine_kernels::sweep::fast::{
+    Advance, DisplacementLimit, EquationOfMotion, ForceRecords, StateRecords,
+};
 
 /// Moves discs by dt times noise, along x by the first number and along y by the second.
 #[derive(Clone, Copy, Debug)]
@@ -48,14 +50,17 @@ fn places<C: Scheme>(
     set: InstructionSet,
 ) -> Vec<[f64; 2]> {
     let n = ids.len();
-    let mut columns = vec![vec![vec![0.0; n]; C::CARRIED]; 2];
-    let mut sums = vec![vec![0.0; n]; 2];
+    let mut records = StateRecords::<f64>::zeros(0, n, [false; 2], 1.0);
+    let mut sums = ForceRecords::<f64>::zeros(0, n);
+    let mut higher = vec![vec![vec![0.0; n]; C::CARRIED - 2]; 2];
     for step in 0..steps {
         let advance = Advance {
             motion,
-            state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
-            sums: sums.iter_mut().map(Vec::as_mut_slice).collect::<Vec<&mut [f64]>>(),
-            inverse: [&[], &[]],
+            freedoms: 2,
+            records: &mut records,
+            higher: higher.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
+            sums: &mut sums,
+            inverse_inertia: &[],
             discs: 0..n,
             step,
             ids,
@@ -63,13 +68,14 @@ fn places<C: Scheme>(
             longest_step: f64::INFINITY,
         };
         advance.run(DisplacementLimit::Cell([1e9, 1e9]), None, set).unwrap();
-        for (sum, row) in sums.iter_mut().zip(&columns) {
-            sum.iter_mut().zip(&row[0]).for_each(|(sum, &place)| *sum = force(place));
+        for disc in 0..n {
+            let place = records.position(disc);
+            (0..2).for_each(|axis| sums.set(axis, disc, force(place[axis])));
         }
     }
     let mut places = vec![[0.0; 2]; n];
     for (disc, &id) in ids.iter().enumerate() {
-        places[id as usize] = [columns[0][0][disc], columns[1][0][disc]];
+        places[id as usize] = records.position(disc);
     }
     places
 }

@@ -16,8 +16,8 @@ use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{
-    CellGrid, DiscColumns, Finder, PairBuffer, PairSequence, RowLayout, SENTINELS, SearchCursor, Sectors,
-    Sweep, VerletList,
+    CellGrid, Finder, ForceRecords, PairBuffer, PairSequence, RecordEntry, RowLayout, SENTINELS,
+    SearchCursor, Sectors, StateRecords, Sweep, VerletList,
 };
 use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
@@ -59,22 +59,31 @@ fn scattered(
     Scattered { positions, sectors, places }
 }
 
+/// Records of discs and sentinels at these positions.
+fn records(places: &[Vec<f64>; 2]) -> StateRecords<f64> {
+    let mut records = StateRecords::zeros(0, places[0].len() - SENTINELS, [false; 2], 1.0);
+    for (axis, column) in places.iter().enumerate() {
+        records.fill(RecordEntry::of(axis, 0), |disc| column[disc]);
+    }
+    records
+}
+
 /// Pairs, the smaller number first, with the displacement from the first disc to the second.
 type Found = BTreeMap<[u32; 2], [f64; 2]>;
 
 /// Pairs that a finder finds, band by band.
 fn found<F: Finder<f64, f64>>(finder: &F, places: &[Vec<f64>; 2]) -> Found {
-    let (rows, mut all) = (finder.rows().count, Found::new());
+    let (rows, mut all, discs) = (finder.rows().count, Found::new(), records(places));
     for band in [0..rows / 2, rows / 2..rows] {
         let (mut cursor, mut list) = (SearchCursor::at(band.start), F::Found::default());
         while cursor.row() < band.end {
-            let columns = [places[0].as_slice(), places[1].as_slice()];
-            finder.find(columns, band.clone(), &mut cursor, &mut list, InstructionSet::best()).unwrap();
+            finder.find(&discs, band.clone(), &mut cursor, &mut list, InstructionSet::best()).unwrap();
             let pairs = finder.pairs(&list);
             for number in 0..pairs.count() {
-                let ([a, b], configuration) = pairs.pair(number);
+                let ([a, b], cell_offset) = pairs.pair(number);
+                let cell_offset = pairs.cell_offsets()[cell_offset as usize];
                 let to = [0, 1]
-                    .map(|axis| places[axis][b as usize] - places[axis][a as usize] + configuration[axis]);
+                    .map(|axis| places[axis][b as usize] - places[axis][a as usize] + cell_offset[axis]);
                 let (pair, to) = if a < b { ([a, b], to) } else { ([b, a], to.map(|along| -along)) };
                 assert!(all.insert(pair, to).is_none(), "{pair:?} found twice");
             }
@@ -128,7 +137,7 @@ proptest! {
         let Scattered { positions, sectors, places } = scattered(sides, periodic, reach, skin, discs, seed);
         let expected = naive(&positions, sides, periodic, reach);
         assert_same(&found(&sectors, &places), &expected, reach);
-        let mut list = VerletList::new(&sectors, [&places[0][..], &places[1][..]], skin);
+        let mut list = VerletList::new(&sectors, &records(&places), skin);
         assert_same(&found(&list, &places), &expected, reach);
         prop_assert!(list.entries() >= expected.len());
         // Every disc moves as far as the skin allows: the list is still valid.
@@ -150,7 +159,7 @@ proptest! {
             let there = order.iter().map(|&disc| place[disc as usize]);
             there.chain(place[discs..].iter().copied()).collect::<Vec<f64>>()
         });
-        list = VerletList::new(&sectors, [&sorted[0][..], &sorted[1][..]], skin);
+        list = VerletList::new(&sectors, &records(&sorted), skin);
         let back = |found: Found| -> Vec<[u32; 2]> {
             let mut pairs: Vec<_> = found.into_keys().map(|pair| pair.map(|disc| order[disc as usize])).collect();
             pairs.iter_mut().for_each(|pair| pair.sort_unstable());
@@ -171,25 +180,25 @@ fn lattice(columns: usize) -> (Occupancy, LatticeFrame) {
     (Occupancy::new(shape, frame, 1, 1.0, false), frame)
 }
 
-fn search(lattice: &Lattice<'_, f64>, entries: usize) -> Candidates {
-    let (column, mut cursor, mut found) = (vec![0.0; entries], SearchCursor::at(0), Candidates::default());
-    let places: [&[f64]; 2] = [&column, &column];
-    lattice.find(places, 0..20, &mut cursor, &mut found, InstructionSet::best()).unwrap();
+fn search(lattice: &Lattice<'_, f64>, discs: usize) -> Candidates {
+    let (mut cursor, mut found) = (SearchCursor::at(0), Candidates::default());
+    let records = StateRecords::<f64>::zeros(0, discs, [false; 2], 1.0);
+    lattice.find(&records, 0..20, &mut cursor, &mut found, InstructionSet::best()).unwrap();
     found
 }
 
-/// Tables and columns that are too short for a lattice are rejected before they are read unchecked.
+/// Tables of another lattice and records of too few discs are rejected before they are read unchecked.
 #[test]
-fn lattices_reject_foreign_codes_and_columns() {
+fn lattices_reject_foreign_codes_and_records() {
     let [(narrow, frame), (wide, _)] = [lattice(20), lattice(40)];
     let [of_narrow, of_wide] = [&narrow, &wide].map(|occupancy| Codes::<f64>::new(occupancy, frame));
-    let refused = |codes, entries| {
+    let refused = |codes, discs| {
         let lattice = Lattice { occupancy: &narrow, codes, slack: 0.0 };
-        catch_unwind(AssertUnwindSafe(|| search(&lattice, entries))).is_err()
+        catch_unwind(AssertUnwindSafe(|| search(&lattice, discs))).is_err()
     };
-    assert!(!refused(&of_narrow, 1 + SENTINELS));
-    assert!(refused(&of_narrow, SENTINELS));
-    assert!(refused(&of_wide, 1 + SENTINELS));
+    assert!(!refused(&of_narrow, 1));
+    assert!(refused(&of_narrow, 0));
+    assert!(refused(&of_wide, 1));
 }
 
 /// Threads share the construction of lists; the result does not depend on their number.
@@ -199,13 +208,13 @@ fn verlet_lists_do_not_depend_on_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut of = scattered([300.0, 130.0], [true, false], 1.0, 0.3, 50_000, 11);
-            let before = VerletList::new(&of.sectors, [&of.places[0], &of.places[1]], 0.3);
+            let before = VerletList::new(&of.sectors, &records(&of.places), 0.3);
             let order = of.sectors.order();
             of.sectors.renumber(&order);
             let places =
                 of.places.map(|place| order.iter().map(|&disc| place[disc as usize]).collect::<Vec<_>>());
             let places = places.map(|place| [place.as_slice(), &[0.0; SENTINELS]].concat());
-            let after = VerletList::new(&of.sectors, [&places[0], &places[1]], 0.3);
+            let after = VerletList::new(&of.sectors, &records(&places), 0.3);
             assert!(before.entries() > 100_000 && after.entries() == before.entries());
             (order, before, after)
         })
@@ -231,13 +240,13 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
 
     fn find(
         &self,
-        places: [&[f64]; 2],
+        discs: &StateRecords<f64>,
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut PairBuffer<f64>,
         set: InstructionSet,
     ) -> Result<(), ProgramError> {
-        self.0.find(places, rows, cursor, found, set)
+        self.0.find(discs, rows, cursor, found, set)
     }
 
     fn pairs_tried(&self) -> f64 {
@@ -248,9 +257,9 @@ unsafe impl Finder<f64, f64> for Counted<'_> {
         Finder::<f64, f64>::search_items(self.0, rows)
     }
 
-    fn find_part(&self, places: [&[f64]; 2], part: Range<usize>, found: &mut PairBuffer<f64>) {
+    fn find_part(&self, discs: &StateRecords<f64>, part: Range<usize>, found: &mut PairBuffer<f64>) {
         self.1.fetch_add(1, Ordering::Relaxed);
-        self.0.find_part(places, part, found);
+        self.0.find_part(discs, part, found);
     }
 
     fn pairs<'a>(&'a self, found: &'a PairBuffer<f64>) -> impl PairSequence<f64> + 'a {
@@ -294,20 +303,11 @@ fn joint_searches_are_bit_equal_to_serial_ones() {
             pool.install(|| {
                 let counted = Counted(&sectors, AtomicUsize::new(0));
                 let mut sweep = Sweep::new(counted.rows());
-                let discs_of = DiscColumns {
-                    position: [&places[0], &places[1]],
-                    velocity: [&[], &[]],
-                    omega: &[],
-                    per_time: 1.0,
-                    radius: &[],
-                    inverse_mass: &[],
-                };
-                let mut sums = [0, 1, 2].map(|_| vec![0.0; discs]);
+                let mut sums = ForceRecords::zeros(0, discs);
                 let asked = ObservationRequest { energy: true, ..ObservationRequest::default() };
-                let columns = sums.each_mut().map(Vec::as_mut_slice);
-                let met =
-                    sweep.run(&law, &counted, &discs_of, columns, asked, InstructionSet::best()).unwrap();
-                let bits = sums.map(|sum| sum.into_iter().map(f64::to_bits).collect::<Vec<_>>());
+                let (records, set) = (records(&places), InstructionSet::best());
+                let met = sweep.run(&law, &counted, &records, &mut sums, asked, set).unwrap();
+                let bits: Vec<_> = (0..discs).map(|disc| sums.of(disc).map(f64::to_bits)).collect();
                 (bits, met.pairs, met.energy.map(f64::to_bits), counted.1.into_inner())
             })
         };

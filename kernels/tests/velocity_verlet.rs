@@ -5,7 +5,9 @@ use stripmine_kernels::integrator::velocity_verlet::{VelocityVerlet, VerletDrift
 use stripmine_kernels::integrator::{Inertia, Scheme};
 use stripmine_kernels::isa::{Array, Memory, Slot};
 use stripmine_kernels::noise::NoiseSource;
-use stripmine_kernels::sweep::fast::{Advance, DisplacementLimit, EquationOfMotion};
+use stripmine_kernels::sweep::fast::{
+    Advance, DisplacementLimit, EquationOfMotion, ForceRecords, RecordEntry, StateRecords,
+};
 use stripmine_kernels::{Execution, InstructionSet, Program};
 
 const INERTIA: Inertia = Inertia::Equal { inverse_mass: 0.5, inverse_inertia: 4.0 };
@@ -79,21 +81,27 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
         gravity,
         noise: NoiseSource::new(0),
     };
-    let mut columns: Vec<Vec<Vec<f64>>> = state.iter().map(|row| row[..2].to_vec()).collect();
+    let mut records = StateRecords::<f64>::zeros(0, discs, [true, false], 1.0);
     // Forces that give the initial accelerations, without gravity.
-    let mut sums: Vec<Vec<f64>> = (0..FREEDOMS)
-        .map(|freedom| {
-            let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
-            let gravity = gravity.get(freedom).copied().unwrap_or(0.0);
-            state[freedom][2].iter().map(|a| (a - gravity) / inverse).collect()
-        })
-        .collect();
+    let mut sums = ForceRecords::<f64>::zeros(0, discs);
+    for (freedom, row) in state.iter().enumerate() {
+        let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
+        let gravity = gravity.get(freedom).copied().unwrap_or(0.0);
+        for disc in 0..discs {
+            (0..2).for_each(|k| records.set(RecordEntry::of(freedom, k), disc, row[k][disc]));
+            sums.set(freedom, disc, (row[2][disc] - gravity) / inverse);
+        }
+    }
+    let entry =
+        |records: &StateRecords<f64>, freedom, k, disc| records.get(RecordEntry::of(freedom, k), disc);
     for step in 0..steps {
         let advance = Advance {
             motion: &motion,
-            state: columns.iter_mut().map(|row| row.iter_mut().map(Vec::as_mut_slice).collect()).collect(),
-            sums: sums.iter_mut().map(Vec::as_mut_slice).collect::<Vec<&mut [f64]>>(),
-            inverse: [&[], &[]],
+            freedoms: FREEDOMS,
+            records: &mut records,
+            higher: (0..FREEDOMS).map(|_| vec![]).collect(),
+            sums: &mut sums,
+            inverse_inertia: &[],
             discs: 0..discs,
             step,
             ids: &[],
@@ -101,16 +109,17 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
             longest_step: f64::INFINITY,
         };
         advance.run(DisplacementLimit::Cell([1e9, 1e9]), None, InstructionSet::best()).unwrap();
-        for (freedom, sum) in sums.iter_mut().enumerate() {
-            let [r, v] = [0, 1].map(|k| &columns[freedom][k]);
-            sum.iter_mut().enumerate().for_each(|(disc, sum)| *sum = force(r[disc], v[disc]));
+        for (freedom, disc) in (0..FREEDOMS).flat_map(|freedom| (0..discs).map(move |disc| (freedom, disc))) {
+            let [r, v] = [0, 1].map(|k| entry(&records, freedom, k, disc));
+            sums.set(freedom, disc, force(r, v));
         }
     }
     std::array::from_fn(|freedom| {
         let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
         let corrected = |disc: usize| {
-            let predicted = [columns[freedom][0][disc], columns[freedom][1][disc], 0.0, 0.0, 0.0, 0.0];
-            motion.corrected((steps, disc as u32), freedom, predicted, sums[freedom][disc], inverse)
+            let [r, v] = [0, 1].map(|k| entry(&records, freedom, k, disc));
+            let predicted = [r, v, 0.0, 0.0, 0.0, 0.0];
+            motion.corrected((steps, disc as u32), freedom, predicted, sums.of(disc)[freedom], inverse)
         };
         [0, 1].map(|k| (0..discs).map(|disc| corrected(disc)[k]).collect())
     })

@@ -4,6 +4,7 @@ mod dispatch;
 mod estimated;
 mod precision;
 mod pulp;
+mod records;
 mod registers;
 mod scalar;
 pub mod tape;
@@ -16,6 +17,8 @@ pub use dispatch::{InstructionSet, RegisterTask, dispatch_best, dispatch_native}
 pub use estimated::EstimatingElement;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};
+pub use records::RecordPlaces;
+pub(crate) use records::{QUAD, block};
 pub(crate) use registers::Strip;
 pub use registers::{IndexLanes, Registers};
 pub use scalar::Scalar;

@@ -1,5 +1,8 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, from the crate `pulp`.
 
+#[cfg(target_arch = "x86_64")]
+use super::records::native;
+use super::records::{self, QUAD, RecordPlaces, block};
 use super::registers::{IndexLanes, Registers};
 use super::values::{implement_operator, implement_predicate, implement_vector};
 use crate::isa::list::for_each_op;
@@ -38,6 +41,59 @@ pub trait PulpElement: Element {
     fn none<S: Simd>(simd: S, a: Self::P<S>) -> bool;
     #[doc(hidden)]
     fn bits<S: Simd>(simd: S, a: Self::P<S>) -> u64;
+    /// As [`Registers::load_blocks`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn load_blocks<S: Simd>(simd: S, places: RecordPlaces<'_, Self>) -> [Self::V<S>; QUAD];
+    /// As [`Registers::load_block_run`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn load_block_run<S: Simd>(simd: S, first: *const Self) -> [Self::V<S>; QUAD];
+    /// As [`Registers::store_block_run`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn store_block_run<S: Simd>(simd: S, values: [Self::V<S>; QUAD], first: *mut Self);
+    /// As [`Registers::load_quad_run`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn load_quad_run<S: Simd>(simd: S, first: *const Self) -> [Self::V<S>; QUAD];
+    /// As [`Registers::add_quads`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn add_quads<S: Simd>(
+        simd: S,
+        count: usize,
+        values: [[Self::V<S>; QUAD]; 2],
+        quads: [RecordPlaces<'_, Self>; 2],
+    );
+}
+
+/// Calls the function of this instruction set on x86-64, or else evaluates the last expression.
+macro_rules! on_native {
+    ($simd:ident, $v4:ident | $v3:ident, |$set:ident, $native:ident| $call:expr, $otherwise:expr) => {{
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some($set) = same_value::<S, pulp::x86::V4>($simd) {
+                use native::$v4 as $native;
+                return $call;
+            }
+            if let Some($set) = same_value::<S, pulp::x86::V3>($simd) {
+                use native::$v3 as $native;
+                return $call;
+            }
+        }
+        $otherwise
+    }};
 }
 
 /// Forwards an operation of registers to their elements.
@@ -74,7 +130,8 @@ macro_rules! pulp_element {
     ($ty:ident, $register:ident, $truth:ident, $lanes:ident, $widest:literal,
      $splat:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $sqrt:ident $abs:ident
      $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident
-     $movemask:ident $bits:ident) => {
+     $movemask:ident $bits:ident $load_v4:ident $run_v4:ident $store_v4:ident $quads_v4:ident $add_v4:ident
+     $load_v3:ident $run_v3:ident $store_v3:ident $quads_v3:ident $add_v3:ident) => {
         impl PulpElement for $ty {
             type V<S: Simd> = S::$register;
             type P<S: Simd> = S::$truth;
@@ -143,6 +200,71 @@ macro_rules! pulp_element {
                 }
                 bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
             }
+            // SAFETY: of all of these functions, the caller makes the promise.
+            #[inline(always)]
+            unsafe fn load_blocks<S: Simd>(simd: S, places: RecordPlaces<'_, $ty>) -> [S::$register; QUAD] {
+                unsafe {
+                    on_native!(
+                        simd,
+                        $load_v4 | $load_v3,
+                        |set, load| as_registers(load(set, places)),
+                        inner(records::load_by_number(Pulp::<S, $ty>::new(simd), block::<$ty>(), places))
+                    )
+                }
+            }
+            #[inline(always)]
+            unsafe fn load_block_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
+                unsafe {
+                    on_native!(simd, $run_v4 | $run_v3, |set, load| as_registers(load(set, first)), {
+                        let (numbers, first) = (block::<$ty>(), first.cast_mut());
+                        let run = RecordPlaces::run(first, numbers);
+                        inner(records::load_by_number(Pulp::<S, $ty>::new(simd), numbers, run))
+                    })
+                }
+            }
+            #[inline(always)]
+            unsafe fn store_block_run<S: Simd>(simd: S, values: [S::$register; QUAD], first: *mut $ty) {
+                unsafe {
+                    on_native!(
+                        simd,
+                        $store_v4 | $store_v3,
+                        |set, store| store(set, as_registers(values), first),
+                        {
+                            let (numbers, values) = (block::<$ty>(), wrapped(simd, values));
+                            let run = RecordPlaces::run(first, numbers);
+                            records::store_by_number(Pulp::<S, $ty>::new(simd), numbers, values, run);
+                        }
+                    )
+                }
+            }
+            #[inline(always)]
+            unsafe fn load_quad_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
+                unsafe {
+                    on_native!(simd, $quads_v4 | $quads_v3, |set, load| as_registers(load(set, first)), {
+                        let run = RecordPlaces::run(first.cast_mut(), QUAD);
+                        inner(records::load_by_number(Pulp::<S, $ty>::new(simd), QUAD, run))
+                    })
+                }
+            }
+            #[inline(always)]
+            unsafe fn add_quads<S: Simd>(
+                simd: S,
+                count: usize,
+                [added, subtracted]: [[S::$register; QUAD]; 2],
+                quads: [RecordPlaces<'_, $ty>; 2],
+            ) {
+                unsafe {
+                    on_native!(
+                        simd,
+                        $add_v4 | $add_v3,
+                        |set, add| add(set, count, [as_registers(added), as_registers(subtracted)], quads),
+                        {
+                            let values = [wrapped(simd, added), wrapped(simd, subtracted)];
+                            records::add_by_number(Pulp::<S, $ty>::new(simd), count, values, quads);
+                        }
+                    )
+                }
+            }
         }
     };
 }
@@ -150,10 +272,14 @@ macro_rules! pulp_element {
 pulp_element!(
     f64, f64s, m64s, F64_LANES, 8, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
     less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s _mm256_movemask_pd b8
+    load_blocks_f64_v4 load_block_run_f64_v4 store_block_run_f64_v4 load_quad_run_f64_v4 add_quads_f64_v4
+    load_blocks_f64_v3 load_block_run_f64_v3 store_block_run_f64_v3 load_quad_run_f64_v3 add_quads_f64_v3
 );
 pulp_element!(
     f32, f32s, m32s, F32_LANES, 16, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
     less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps b16
+    load_blocks_f32_v4 load_block_run_f32_v4 store_block_run_f32_v4 load_quad_run_f32_v4 add_quads_f32_v4
+    load_blocks_f32_v3 load_block_run_f32_v3 store_block_run_f32_v3 load_quad_run_f32_v3 add_quads_f32_v3
 );
 
 /// Converts a value to another type of the same size if the types allow it: `pulp` has no such instruction for all its sets.
@@ -165,6 +291,27 @@ fn same_value<A: Copy + 'static, B: Copy + 'static>(value: A) -> Option<B> {
     // SAFETY: A and B are one type, or A is a 256-bit register of truth values and B plain data of the same size, for which every
     // bit pattern is a value.
     (same && size_of::<A>() == size_of::<B>()).then(|| unsafe { std::mem::transmute_copy(&value) })
+}
+
+/// The same registers in the type of another crate.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn as_registers<A: Copy, B: Copy>(registers: [A; QUAD]) -> [B; QUAD] {
+    assert!(size_of::<A>() == size_of::<B>(), "registers of different widths");
+    // SAFETY: both are plain data of one size, for which every bit pattern is a value.
+    unsafe { std::mem::transmute_copy(&registers) }
+}
+
+/// Registers of `pulp` inside.
+#[inline(always)]
+fn inner<S: Simd, T: PulpElement>([x, y, u, v]: [PulpRegister<S, T>; QUAD]) -> [T::V<S>; QUAD] {
+    [x.1, y.1, u.1, v.1]
+}
+
+/// Registers of `pulp` with the token of their instruction set.
+#[inline(always)]
+fn wrapped<S: Simd, T: PulpElement>(simd: S, [x, y, u, v]: [T::V<S>; QUAD]) -> [PulpRegister<S, T>; QUAD] {
+    [PulpRegister(simd, x), PulpRegister(simd, y), PulpRegister(simd, u), PulpRegister(simd, v)]
 }
 
 /// Converts truth values to bits. They are already bits (a register of them has at most 8 bytes), or lanes with all bits set or
@@ -248,5 +395,35 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     #[inline(always)]
     fn bits(self, predicate: PulpPredicate<S, T>) -> u64 {
         <T as PulpElement>::bits(self.simd, predicate.1)
+    }
+    #[inline(always)]
+    unsafe fn load_blocks(self, places: RecordPlaces<'_, T>) -> [Self::V; QUAD] {
+        // SAFETY: the caller makes the same promise.
+        wrapped(self.simd, unsafe { T::load_blocks(self.simd, places) })
+    }
+    #[inline(always)]
+    unsafe fn load_block_run(self, first: *const T) -> [Self::V; QUAD] {
+        // SAFETY: the caller makes the same promise.
+        wrapped(self.simd, unsafe { T::load_block_run(self.simd, first) })
+    }
+    #[inline(always)]
+    unsafe fn store_block_run(self, values: [Self::V; QUAD], first: *mut T) {
+        // SAFETY: the caller makes the same promise.
+        unsafe { T::store_block_run(self.simd, inner(values), first) }
+    }
+    #[inline(always)]
+    unsafe fn load_quad_run(self, first: *const T) -> [Self::V; QUAD] {
+        // SAFETY: the caller makes the same promise.
+        wrapped(self.simd, unsafe { T::load_quad_run(self.simd, first) })
+    }
+    #[inline(always)]
+    unsafe fn add_quads(
+        self,
+        count: usize,
+        [added, subtracted]: [[Self::V; QUAD]; 2],
+        quads: [RecordPlaces<'_, T>; 2],
+    ) {
+        // SAFETY: the caller makes the same promise.
+        unsafe { T::add_quads(self.simd, count, [inner(added), inner(subtracted)], quads) }
     }
 }

@@ -1,5 +1,6 @@
 //! Machine over registers: one implementation of every instruction for any register file.
 
+use super::records::{self, QUAD, RecordPlaces, block};
 use crate::isa::list::for_each_op;
 use crate::isa::{
     ArrayColumn, Element, LaneCounter, Machine, Memory, Slot, Storage, Vector, is_same_storage,
@@ -69,6 +70,60 @@ pub trait Registers: Copy + 'static {
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
     /// Truth values as bits, lane 0 lowest.
     fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
+
+    /// Loads a block of 16 bytes for each lane: register k holds the number k of every lane, or zero if a block has fewer.
+    ///
+    /// # Safety
+    /// Every lane's record begins with an initialised block; nothing writes it during the call.
+    #[inline(always)]
+    unsafe fn load_blocks(self, places: RecordPlaces<'_, Self::Lane>) -> [Self::V; QUAD] {
+        // SAFETY: the caller makes the same promise.
+        unsafe { records::load_by_number(self, block::<Self::Lane>(), places) }
+    }
+    /// As [`load_blocks`](Self::load_blocks), for blocks one behind the other.
+    ///
+    /// # Safety
+    /// `first` points to `LANES` initialised blocks; nothing writes them during the call.
+    #[inline(always)]
+    unsafe fn load_block_run(self, first: *const Self::Lane) -> [Self::V; QUAD] {
+        let numbers = block::<Self::Lane>();
+        // SAFETY: the caller makes the same promise.
+        unsafe { records::load_by_number(self, numbers, RecordPlaces::run(first.cast_mut(), numbers)) }
+    }
+    /// Stores blocks one behind the other, of register k the number k.
+    ///
+    /// # Safety
+    /// `first` points to space for `LANES` blocks; nothing else reads or writes there during the call.
+    #[inline(always)]
+    unsafe fn store_block_run(self, values: [Self::V; QUAD], first: *mut Self::Lane) {
+        let numbers = block::<Self::Lane>();
+        // SAFETY: the caller makes the same promise.
+        unsafe { records::store_by_number(self, numbers, values, RecordPlaces::run(first, numbers)) }
+    }
+    /// Loads quads one behind the other: register k holds the number k of every lane.
+    ///
+    /// # Safety
+    /// `first` points to `LANES` initialised quads; nothing writes them during the call.
+    #[inline(always)]
+    unsafe fn load_quad_run(self, first: *const Self::Lane) -> [Self::V; QUAD] {
+        // SAFETY: the caller makes the same promise.
+        unsafe { records::load_by_number(self, QUAD, RecordPlaces::run(first.cast_mut(), QUAD)) }
+    }
+    /// For the first `count` lanes, one after the other: adds four numbers to the lane's quad in the first place, then subtracts
+    /// four from that in the second.
+    ///
+    /// # Safety
+    /// Both quads of every such lane have four initialised numbers; nothing else reads or writes there during the call.
+    #[inline(always)]
+    unsafe fn add_quads(
+        self,
+        count: usize,
+        added_and_subtracted: [[Self::V; QUAD]; 2],
+        quads: [RecordPlaces<'_, Self::Lane>; 2],
+    ) {
+        // SAFETY: the caller makes the same promise.
+        unsafe { records::add_by_number(self, count, added_and_subtracted, quads) }
+    }
 }
 
 /// A strip of `R::LANES` elements of a memory, from element `base` on.

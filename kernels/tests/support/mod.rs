@@ -12,7 +12,7 @@ use stripmine_kernels::law::{Law, ObservationRequest, ParticleField, ParticleSum
 use stripmine_kernels::mask::Mask;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::sweep::fast::lattice::{Codes, Lattice, Occupancy};
-use stripmine_kernels::sweep::fast::{self, Finder, SENTINELS, Sweep};
+use stripmine_kernels::sweep::fast::{self, Finder, RecordEntry, Sweep};
 use stripmine_kernels::sweep::lattice::cells::{
     CONFLICTS, CheckIndex, ClearIndex, EnterDiscs, IndexImages, STRAYS,
 };
@@ -304,15 +304,6 @@ impl<S: Precision, P: Precision> System<S, P> {
         order: &[u32],
         set: InstructionSet,
     ) -> Result<(Vec<[P; 3]>, fast::SweepReport), ProgramError> {
-        let far = 100.0;
-        let sorted = |column: &[S], sentinels: [f64; SENTINELS]| -> Vec<S> {
-            let there = order.iter().map(|&disc| column[disc as usize]);
-            there.chain(sentinels.map(S::from_f64)).collect()
-        };
-        let state = |column: &[P]| -> Vec<S> {
-            let column: Vec<S> = column.iter().map(|x| S::from_f64(x.to_f64())).collect();
-            sorted(&column, [1.0; SENTINELS])
-        };
         let mut occupancy = Occupancy::new(
             self.shape,
             self.frame,
@@ -334,27 +325,29 @@ impl<S: Precision, P: Precision> System<S, P> {
             occupancy.enter(n, cell, place, self.radius[disc].to_f64()).unwrap();
         }
         occupancy.repeat_images();
-        let places = [sorted(&places[0], [0.0, far]), sorted(&places[1], [0.0, far])];
-        let velocity = self.velocity.each_ref().map(|column| state(column));
-        let (radius, inverse_mass) = (state(&self.radius), state(&self.lattice_inverse_mass));
-        let discs = fast::DiscColumns {
-            position: [&places[0], &places[1]],
-            velocity: [&velocity[0], &velocity[1]],
-            omega: &velocity[2],
-            per_time: 1.0,
-            radius: &radius,
-            inverse_mass: &inverse_mass,
+        let mut records = fast::StateRecords::zeros(0, self.discs, [true, true], 1.0);
+        let mut fill = |entry: RecordEntry, column: &(dyn Fn(usize) -> f64 + Sync), sentinel: f64| {
+            let value = |disc: usize| order.get(disc).map_or(sentinel, |&number| column(number as usize));
+            records.fill(entry, |disc| S::from_f64(value(disc)));
         };
-        let mut sums = [0, 1, 2].map(|_| vec![P::default(); self.discs]);
-        let [fx, fy, torque] = &mut sums;
+        for axis in 0..2 {
+            fill(RecordEntry::of(axis, 0), &|disc| places[axis][disc].to_f64(), 0.0);
+            fill(RecordEntry::of(axis, 1), &|disc| self.velocity[axis][disc].to_f64(), 1.0);
+        }
+        fill(RecordEntry::Omega, &|disc| self.velocity[2][disc].to_f64(), 1.0);
+        fill(RecordEntry::Radius, &|disc| self.radius[disc].to_f64(), 1.0);
+        fill(RecordEntry::InverseMass, &|disc| self.lattice_inverse_mass[disc].to_f64(), 1.0);
+        // The sentinels are far apart.
+        records.set(RecordEntry::X, self.discs, S::from_f64(100.0));
+        let mut sums = fast::ForceRecords::<P>::zeros(0, self.discs);
         let codes = Codes::new(&occupancy, self.frame);
         let lattice = Lattice { occupancy: &occupancy, codes: &codes, slack: 0.0 };
         let mut sweep = Sweep::new(Finder::<S, P>::rows(&lattice));
         let asked = ObservationRequest { watched: Some(0.1), dissipation: true, energy: true };
-        let met = sweep.run(law, &lattice, &discs, [fx, fy, torque], asked, set)?;
+        let met = sweep.run(law, &lattice, &records, &mut sums, asked, set)?;
         let mut forces = vec![[P::default(); 3]; self.discs];
         for (n, &disc) in order.iter().enumerate() {
-            forces[disc as usize] = [0, 1, 2].map(|sum| sums[sum][n]);
+            forces[disc as usize] = sums.of(n);
         }
         Ok((forces, met))
     }

@@ -19,8 +19,9 @@
 //!
 //! Derivatives that a scheme does not carry from step to step are not stored ([`Scheme::CARRIED`]).
 
+use super::records::{ENTRIES, ForceRecords, MOST_BLOCKS, RecordEntry, StateRecords};
 use crate::InstructionSet;
-use crate::backend::{Precision, Registers, Scalar};
+use crate::backend::{Precision, QUAD, Registers, Scalar, block};
 use crate::backend::{RegisterTask, dispatch_native};
 use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, is_same_storage};
@@ -164,12 +165,16 @@ impl<C: Scheme> EquationOfMotion<C> {
 pub struct Advance<'a, S, P, C> {
     /// Equation of motion and its integration.
     pub motion: &'a EquationOfMotion<C>,
-    /// For each degree of freedom one column per carried derivative, with at least one entry per moving disc.
-    pub state: Vec<Vec<&'a mut [S]>>,
-    /// Force along x, force along y, torque: one column per degree of freedom.
-    pub sums: Vec<&'a mut [P]>,
-    /// Inverse masses and moments of inertia, where discs vary.
-    pub inverse: [&'a [S]; 2],
+    /// Number of degrees of freedom: 2, or 3 with rotation.
+    pub freedoms: usize,
+    /// Values and rates of change, and inverse masses; at least one record per moving disc.
+    pub records: &'a mut StateRecords<S>,
+    /// For each degree of freedom one column per carried derivative from the second on, with at least one entry per moving disc.
+    pub higher: Vec<Vec<&'a mut [S]>>,
+    /// Sums of the forces.
+    pub sums: &'a mut ForceRecords<P>,
+    /// Inverse moments of inertia, where discs vary and rotate.
+    pub inverse_inertia: &'a [S],
     /// Discs to move.
     pub discs: Range<usize>,
     /// Number of the step to correct; the next one is predicted.
@@ -196,28 +201,29 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         copies: Option<PositionCopies<'_>>,
         set: InstructionSet,
     ) -> Result<PassReport, ProgramError> {
-        let Advance { motion, discs, corrected, longest_step, inverse, step, ids, .. } = self;
+        let Advance { motion, freedoms, discs, corrected, longest_step, inverse_inertia, step, ids, .. } =
+            self;
         let end = discs.end;
         assert!(C::DRAWS == Draws::Never || ids.len() >= end, "ids has no entry for some moving disc");
-        let freedoms = self.state.len();
-        assert!((2..=3).contains(&freedoms) && self.sums.len() == freedoms, "2 or 3 degrees of freedom");
+        assert!((2..=3).contains(&freedoms) && self.higher.len() == freedoms, "2 or 3 degrees of freedom");
         let vary = motion.inertia == Inertia::Varying;
-        assert!(!vary || inverse[..freedoms - 1].iter().all(|column| column.len() >= end));
+        assert!(self.records.discs() >= end && self.sums.discs() >= end, "a moving disc without a record");
+        assert!(
+            freedoms == 2 || self.records.has(RecordEntry::Omega),
+            "records without the angular velocity"
+        );
+        assert!(!vary || self.records.has(RecordEntry::InverseMass), "records without the inverse mass");
+        assert!(!vary || freedoms == 2 || inverse_inertia.len() >= end);
         if let DisplacementLimit::From { positions, .. } = limit {
             assert!(
                 positions.iter().all(|position| position.len() >= end),
                 "a column of reference positions has no entry for some moving disc"
             );
         }
-        let mut columns = [[std::ptr::null_mut(); DERIVATIVES]; 3];
-        for (to, from) in columns.iter_mut().zip(&mut self.state) {
-            assert!(from.len() == C::CARRIED && from.iter().all(|column| column.len() >= end));
+        let mut columns = [[std::ptr::null_mut(); DERIVATIVES - 2]; 3];
+        for (to, from) in columns.iter_mut().zip(&mut self.higher) {
+            assert!(from.len() == C::CARRIED - 2 && from.iter().all(|column| column.len() >= end));
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.as_mut_ptr());
-        }
-        let mut sums = [std::ptr::null_mut(); 3];
-        for (to, from) in sums.iter_mut().zip(&mut self.sums) {
-            assert!(from.len() >= end);
-            *to = from.as_mut_ptr();
         }
         let copies_positions = copies.is_some();
         let mut none = [[]; 2];
@@ -227,11 +233,12 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
         });
         assert!(!copies_positions || cells.len() >= end, "cells has no entry for some moving disc");
         let arrays = PassPointers {
+            records: self.records.blocks_mut(),
             columns,
-            sums,
+            sums: self.sums.numbers_mut(),
             step,
             ids,
-            inverse: inverse.map(<[S]>::as_ptr),
+            inverse_inertia: inverse_inertia.as_ptr(),
             limit,
             cells: cells.as_ptr(),
             copies_positions,
@@ -265,11 +272,13 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
 
 /// Pointers to the arrays of a pass.
 struct PassPointers<'a, S, P> {
-    columns: [[*mut S; DERIVATIVES]; 3],
-    sums: [*mut P; 3],
+    /// Blocks of the records.
+    records: [*mut S; MOST_BLOCKS],
+    columns: [[*mut S; DERIVATIVES - 2]; 3],
+    sums: *mut P,
     step: u64,
     ids: &'a [u32],
-    inverse: [*const S; 2],
+    inverse_inertia: *const S,
     limit: DisplacementLimit<'a, S>,
     cells: *const u32,
     /// True if positions are copied to the lattice.
@@ -328,12 +337,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
     }
 
     /// Advances one register of discs from `first` on, with their random numbers along x and y.
-    #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
+    #[allow(clippy::needless_range_loop, reason = "several arrays share one index")]
     #[inline(always)]
     fn advance_register<R: Registers<Lane = S>>(&mut self, registers: R, first: usize, noise: [&[S]; 2]) {
         let Pass { motion, arrays, corrected, .. } = *self;
         let uniform = |value: f64| registers.splat(S::from_f64(value));
-        let (mut position, mut velocity) = ([uniform(0.0); 2], [uniform(0.0); 2]);
         let nothing = uniform(f64::NAN);
         let normals = match C::DRAWS {
             Draws::Never => [nothing; 2],
@@ -343,13 +351,31 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 unsafe { [registers.load(noise[0].as_ptr()), registers.load(noise[1].as_ptr())] }
             }
         };
+        let read = match motion.inertia {
+            Inertia::Varying => ENTRIES,
+            Inertia::Equal { .. } => 2 * FREEDOMS,
+        };
+        let numbers = block::<S>();
+        let mut record = [nothing; ENTRIES];
+        for number in 0..MOST_BLOCKS {
+            if number * numbers >= read {
+                break;
+            }
+            // SAFETY: Advance has checked that every moving disc has a record with these entries, those of a register included; this
+            // thread alone works on them.
+            let loaded = unsafe { registers.load_block_run(arrays.records[number].add(first * numbers)) };
+            for k in 0..numbers {
+                record[number * numbers + k] = loaded[k];
+            }
+        }
+        // SAFETY: every moving disc has sums, and this thread alone works on them.
+        let forces = unsafe { take_sums(registers, arrays.sums.add(first * QUAD)) };
         for freedom in 0..FREEDOMS {
-            // SAFETY: Advance has checked that every sum has an entry for every moving disc, which includes those of a register;
-            // this thread alone works on them.
-            let force = unsafe { take_sums(registers, arrays.sums[freedom].add(first)) };
-            let inverse = motion.inertia.inverse(freedom, uniform, || {
-                // SAFETY: where discs vary, Advance has checked that these columns have an entry for every moving disc.
-                unsafe { registers.load(arrays.inverse[freedom / 2].add(first)) }
+            let force = forces[freedom];
+            let inverse = motion.inertia.inverse(freedom, uniform, || match freedom {
+                0 | 1 => record[RecordEntry::InverseMass as usize],
+                // SAFETY: where discs vary and rotate, Advance has checked that there is an entry for every moving disc.
+                _ => unsafe { registers.load(arrays.inverse_inertia.add(first)) },
             });
             let context = |point: Draws| {
                 let normal = if C::DRAWS == point { normals[freedom.min(1)] } else { nothing };
@@ -357,9 +383,11 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             };
             let acceleration = acceleration(uniform, motion.gravity, freedom, force, inverse);
             let mut row = [uniform(0.0); DERIVATIVES];
-            for k in 0..C::CARRIED {
+            let [value, rate] = [RecordEntry::of(freedom, 0) as usize, RecordEntry::of(freedom, 1) as usize];
+            (row[0], row[1]) = (record[value], record[rate]);
+            for k in 2..C::CARRIED {
                 // SAFETY: Advance has checked that every carried derivative has an entry for every moving disc.
-                row[k] = unsafe { registers.load(arrays.columns[freedom][k].add(first)) };
+                row[k] = unsafe { registers.load(arrays.columns[freedom][k - 2].add(first)) };
             }
             if corrected {
                 motion.scheme.begin(&context(Draws::InCorrector), &mut row, acceleration);
@@ -367,15 +395,25 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 motion.scheme.correct(&context(Draws::InCorrector), &mut row, acceleration);
             }
             motion.scheme.predict(&context(Draws::InPredictor), &mut row);
-            for k in 0..C::CARRIED {
+            for k in 2..C::CARRIED {
                 // SAFETY: the row was loaded from there, and this thread alone works on these discs.
-                unsafe { registers.store(arrays.columns[freedom][k].add(first), row[k]) };
+                unsafe { registers.store(arrays.columns[freedom][k - 2].add(first), row[k]) };
             }
-            if freedom < 2 {
-                position[freedom] = row[0];
-                velocity[freedom] = row[1];
-            }
+            (record[value], record[rate]) = (row[0], row[1]);
         }
+        for number in 0..MOST_BLOCKS {
+            if number * numbers >= 2 * FREEDOMS {
+                break;
+            }
+            let mut stored = [nothing; QUAD];
+            for k in 0..numbers {
+                stored[k] = record[number * numbers + k];
+            }
+            // SAFETY: the block was loaded from there, and this thread alone works on these discs.
+            unsafe { registers.store_block_run(stored, arrays.records[number].add(first * numbers)) };
+        }
+        let [x, y, vx, vy, ..] = record;
+        let (position, velocity) = ([x, y], [vx, vy]);
         let stays = match arrays.limit {
             DisplacementLimit::Cell([x, y]) => {
                 let (x, y) = (uniform(0.5 * x), uniform(0.5 * y));
@@ -398,7 +436,8 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
         if !arrays.copies_positions {
             return;
         }
-        let unit = uniform(self.unit);
+        // Copied before the atomic stores, which might otherwise change them.
+        let (cells, copies, unit) = (arrays.cells, arrays.positions, uniform(self.unit));
         for axis in 0..2 {
             let mut along = [S::default(); 16];
             // SAFETY: `along` has 16 entries, and no register has more lanes.
@@ -413,7 +452,7 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
                 // which discs in shared cells have in common: only these stores touch it. They are atomic and compile to plain
                 // ones.
                 unsafe {
-                    let position = arrays.positions[axis].add(*arrays.cells.add(first + lane) as usize);
+                    let position = copies[axis].add(*cells.add(first + lane) as usize);
                     AtomicU32::from_ptr(position.cast()).store(narrow[lane].to_bits(), Ordering::Relaxed);
                 }
             }
@@ -427,27 +466,31 @@ fn list_discs(bits: u64, first: usize, lanes: usize, to: &mut Vec<u32>) {
     to.extend((0..lanes).filter(|lane| bits >> lane & 1 == 1).map(|lane| (first + lane) as u32));
 }
 
-/// Loads sums and sets them to zero.
+/// Loads the sums of a register of discs and sets them to zero.
 ///
 /// # Safety
-/// There are at least as many sums as a register has lanes, at most 16, and no other thread touches them.
+/// There are as many sums as a register has lanes, and no other thread touches them.
 #[inline(always)]
-unsafe fn take_sums<R: Registers, P: Element>(registers: R, sums: *mut P) -> R::V {
+unsafe fn take_sums<R: Registers, P: Element>(registers: R, sums: *mut P) -> [R::V; QUAD] {
     if is_same_storage::<P, R::Lane>() {
-        // SAFETY: P is Lane, and the caller promises LANES sums that belong to this thread.
+        let sums = sums.cast::<R::Lane>();
+        // SAFETY: P is Lane, and the caller promises the sums of LANES discs, which belong to this thread.
         return unsafe {
-            let value = registers.load(sums.cast());
-            registers.store(sums.cast(), registers.splat(R::Lane::default()));
-            value
+            let values = registers.load_quad_run(sums);
+            for quad in 0..QUAD {
+                registers.store(sums.add(quad * R::LANES), registers.splat(R::Lane::default()));
+            }
+            values
         };
     }
-    let mut lanes = [R::Lane::default(); 16];
-    // SAFETY: the caller promises LANES sums that belong to this thread.
-    let sums = unsafe { std::slice::from_raw_parts_mut(sums, R::LANES) };
-    for (lane, sum) in lanes.iter_mut().zip(sums) {
-        *lane = R::Lane::from_f64(sum.to_f64());
-        *sum = P::default();
+    let mut converted = [[R::Lane::default(); QUAD]; 16];
+    // SAFETY: the caller promises the sums of LANES discs, which belong to this thread.
+    let sums = unsafe { std::slice::from_raw_parts_mut(sums.cast::<[P; QUAD]>(), R::LANES) };
+    for (to, from) in converted.iter_mut().zip(sums) {
+        for (to, from) in to.iter_mut().zip(from) {
+            *to = R::Lane::from_f64(std::mem::take(from).to_f64());
+        }
     }
-    // SAFETY: `lanes` has 16 entries, and no register has more lanes.
-    unsafe { registers.load(lanes.as_ptr()) }
+    // SAFETY: `converted` has 16 quads, and no register has more lanes.
+    unsafe { registers.load_quad_run(converted.as_ptr().cast()) }
 }

@@ -23,9 +23,10 @@
 //! depend on the scene alone, so the order of every sum is the same on any number of threads. Partners of the last band beyond
 //! the last row are, on a periodic side, those of the first rows, which band A does not touch in stage 1.
 
-use super::contacts::{BandNotes, DiscColumns, Evaluate, SumColumns};
+use super::contacts::{BandNotes, Evaluate, StatePointers, SumPointer};
 use super::finder::{Finder, RankShare, RowLayout, SearchCursor};
-use super::pairs::{PairBuffer, PairSequence, SENTINELS};
+use super::pairs::{PairBuffer, PairSequence};
+use super::records::{ForceRecords, StateRecords};
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch_native;
@@ -158,49 +159,44 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
         Sweep { rows, bands: bands.collect(), parts: vec![] }
     }
 
-    /// Adds the forces of `law` to the sums (force along x, along y, torque). Each sum has at least one entry per disc.
+    /// Adds the forces of `law` to the sums.
     ///
     /// # Errors
     /// [`ProgramError::NoSuchInstructionSet`], or [`ProgramError::Unstated`] for a law that reads a quantity it does not state;
     /// nothing was executed then.
     ///
     /// # Panics
-    /// If the finder has other rows, a column that the law reads does not have an entry for every disc and sentinel, or a sum has
-    /// fewer entries than there are discs.
+    /// If the finder has other rows or discs, records have no entry for a quantity that the law reads, or there are fewer sums than
+    /// discs.
     pub fn run<S: Element, P: Precision, L: Law<2> + Sync>(
         &mut self,
         law: &L,
         finder: &impl Finder<S, P, Found = F>,
-        discs: &DiscColumns<'_, S>,
-        sums: [&mut [P]; 3],
+        discs: &StateRecords<S>,
+        sums: &mut ForceRecords<P>,
         asked: ObservationRequest,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {
         assert!(self.rows == finder.rows(), "the finder's rows are not those the sweep was made for");
         law::check(law)?;
         let count = finder.discs();
-        assert!(
-            discs.has_all_entries(L::FIELDS, count),
-            "a column does not have an entry for each of {count} discs and {SENTINELS} sentinels"
-        );
-        let mut columns = sums.map(|sum| (sum.len(), sum.as_mut_ptr()));
-        assert!(
-            L::SUMS.iter().all(|sum| columns[sum.column::<2>()].0 >= count),
-            "a column of sums has fewer entries than the {count} discs"
-        );
-        let sums = SumColumns(columns.each_mut().map(|column| column.1));
+        assert_eq!(discs.discs(), count, "the search and the records must have the same discs");
+        assert!(discs.have(L::FIELDS), "the records have no entry for a quantity that the law reads");
+        assert!(sums.discs() >= count, "fewer sums than the {count} discs");
+        let sums = SumPointer(sums.numbers_mut());
+        let state = StatePointers::new::<L>(discs);
         let sentinel = count as u32;
         let sweep = |band: &mut RowBand<F>, stage: usize| -> Result<(), ProgramError> {
             let RowBand { rows, found, notes, pairs: met, .. } = band;
             for rows in &rows[stage] {
                 let mut cursor = SearchCursor::at(rows.start);
                 while cursor.row < rows.end {
-                    finder.find(discs.position, rows.clone(), &mut cursor, found, set)?;
+                    finder.find(discs, rows.clone(), &mut cursor, found, set)?;
                     let pairs = finder.pairs(found);
                     *met += pairs.count() as u64;
                     dispatch_native(
                         set,
-                        Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes },
+                        Evaluate { law, pairs: &pairs, sentinel, state, sums, asked, notes },
                     )?;
                 }
             }
@@ -216,7 +212,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                         let length = all.len().div_ceil(PARTS * threads).max(1);
                         let cut = pieces(all, length).zip(&mut self.parts);
                         let searched = on_threads(cut, |(part, found)| {
-                            finder.find_part(discs.position, part, found);
+                            finder.find_part(discs, part, found);
                             found
                         });
                         for found in searched {
@@ -224,7 +220,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
                             *met += pairs.count() as u64;
                             dispatch_native(
                                 set,
-                                Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes },
+                                Evaluate { law, pairs: &pairs, sentinel, state, sums, asked, notes },
                             )?;
                         }
                     }
@@ -239,7 +235,7 @@ impl<F: Clone + std::fmt::Debug + Default + Send> Sweep<F> {
             let pairs = &beside;
             if pairs.count() > 0 {
                 *met += pairs.count() as u64;
-                dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, discs, sums, asked, notes })?;
+                dispatch_native(set, Evaluate { law, pairs: &pairs, sentinel, state, sums, asked, notes })?;
             }
         }
         let (mut of_bands, mut deep, mut not_finite) = (vec![], vec![], vec![]);

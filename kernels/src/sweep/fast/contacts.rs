@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! pairs      (3,7) (3,9) (5,8) (6,8)            as many as a register has lanes
-//! gather     own     x: x[3] x[3] x[5] x[6]     one load per lane; the law names the columns
+//! gather     own     x: x[3] x[3] x[5] x[6]     records of the discs, transposed
 //!            partner x: x[7] x[9] x[8] x[8]
 //! law        one evaluation for all lanes       -> forces on own and on partner
 //! add        F[3] += lane 0, F[7] -= lane 0,    lane after lane, own before partner
@@ -11,69 +11,56 @@
 //!
 //! Reasons:
 //!
-//! - *Gathers are one load per lane*, because no portable SIMD has an instruction for them.
+//! - *Blocks of records are loaded and transposed* (`records.rs`): a load for two numbers, or four in single precision. A processor's
+//!   gather instruction is slower than that.
 //! - *Sums are added lane after lane*: two lanes may add to one disc, such as 3 and 8 above, and the order of summation must not
 //!   depend on the number of lanes.
 //! - *The last register is padded with a pair of sentinels*, two discs behind the others that never touch. So the law needs no
 //!   second version for partial registers.
-//! - *Reads are not bounds-checked.* Columns are checked once a sweep, pairs are of discs by the [`Finder`](super::Finder)'s
-//!   contract, and a law can read only the columns it states ([`StatedEnv`]).
+//! - *Reads are not bounds-checked.* Records are checked once a sweep, pairs are of discs by the [`Finder`](super::Finder)'s
+//!   contract, and a law can read only the entries it states ([`StatedEnv`]).
 
-use super::pairs::{DiscPair, PairSequence, SENTINELS};
-use crate::backend::{GROUP, RegisterTask};
+use super::pairs::{DiscPair, PairSequence};
+use super::records::{ENTRIES, MOST_BLOCKS, RecordEntry, StateRecords};
+use crate::backend::{GROUP, QUAD, RecordPlaces, RegisterTask, block};
 use crate::backend::{Precision, Registers};
-use crate::isa::{Element, Vector};
+use crate::isa::{Element, Vector, is_same_storage};
 use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
 use std::cell::Cell;
-use std::mem::MaybeUninit;
+use std::marker::PhantomData;
 
-/// Quantities of the discs as a fast sweep reads them: one entry per disc and [`SENTINELS`] more. Columns that the law does not
-/// read may be empty.
+/// Sums of all discs; no other thread touches those that this thread does.
 #[derive(Clone, Copy, Debug)]
-pub struct DiscColumns<'a, S> {
-    /// Positions relative to the centres of the cells (length).
-    pub position: [&'a [S]; 2],
-    /// Velocities, in any unit of time.
-    pub velocity: [&'a [S]; 2],
-    /// Angular velocities, in the same unit.
-    pub omega: &'a [S],
-    /// One over that unit.
-    pub per_time: f64,
-    /// Radii.
-    pub radius: &'a [S],
-    /// Inverse masses.
-    pub inverse_mass: &'a [S],
-}
-
-impl<'a, S: Element> DiscColumns<'a, S> {
-    #[inline(always)]
-    fn column(&self, field: ParticleField) -> &'a [S] {
-        match field {
-            ParticleField::Velocity(axis) => self.velocity[axis as usize],
-            ParticleField::Omega => self.omega,
-            ParticleField::Radius => self.radius,
-            ParticleField::InverseMass => self.inverse_mass,
-            ParticleField::Mass | ParticleField::Occupied => &[],
-        }
-    }
-
-    /// True if every column that a law reads has an entry for every disc and sentinel.
-    #[inline]
-    pub(super) fn has_all_entries(&self, fields: &[ParticleField], discs: usize) -> bool {
-        let columns = fields.iter().map(|&field| self.column(field)).chain(self.position);
-        columns.into_iter().all(|column| column.len() == discs + SENTINELS)
-    }
-}
-
-/// Columns of the sums; no other thread touches the elements that this thread does.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SumColumns<P>(pub(super) [*mut P; 3]);
+pub(super) struct SumPointer<P>(pub(super) *mut P);
 
 // SAFETY: a sweep gives each thread bands of rows, and in each stage no disc belongs to the rows or partners of two bands: what
 // one thread adds to, no other touches.
-unsafe impl<P: Send> Send for SumColumns<P> {}
-// SAFETY: a shared reference only copies the pointers; the argument above covers their use.
-unsafe impl<P: Send> Sync for SumColumns<P> {}
+unsafe impl<P: Send> Send for SumPointer<P> {}
+// SAFETY: a shared reference only copies the pointer; the argument above covers its use.
+unsafe impl<P: Send> Sync for SumPointer<P> {}
+
+/// Columns of the blocks that a law reads.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StatePointers<'a, S> {
+    blocks: [*const S; MOST_BLOCKS],
+    per_time: f64,
+    records: PhantomData<&'a StateRecords<S>>,
+}
+
+impl<'a, S: Element> StatePointers<'a, S> {
+    /// # Panics
+    /// If the records do not have these entries.
+    #[inline]
+    pub(super) fn new<L: Law<2>>(records: &'a StateRecords<S>) -> Self {
+        let blocks = records.blocks(const { entries_read(L::FIELDS) });
+        StatePointers { blocks, per_time: records.per_time(), records: PhantomData }
+    }
+}
+
+// SAFETY: the pointers are to numbers that are borrowed as shared for as long.
+unsafe impl<S: Sync> Send for StatePointers<'_, S> {}
+// SAFETY: as above.
+unsafe impl<S: Sync> Sync for StatePointers<'_, S> {}
 
 /// Observations of a band beside the sums.
 #[derive(Clone, Debug, Default)]
@@ -102,13 +89,13 @@ impl BandNotes {
     }
 }
 
-/// Task that evaluates the law for pairs.
+/// Task that evaluates the law for pairs. There is a record for every disc and sentinel, with the entries that the law states.
 pub(super) struct Evaluate<'a, S, P, L, Q> {
     pub(super) law: &'a L,
     pub(super) pairs: &'a Q,
     pub(super) sentinel: u32,
-    pub(super) discs: &'a DiscColumns<'a, S>,
-    pub(super) sums: SumColumns<P>,
+    pub(super) state: StatePointers<'a, S>,
+    pub(super) sums: SumPointer<P>,
     pub(super) asked: ObservationRequest,
     pub(super) notes: &'a mut BandNotes,
 }
@@ -116,12 +103,15 @@ pub(super) struct Evaluate<'a, S, P, L, Q> {
 /// As many entries as the widest register has lanes.
 type LaneArray<T> = [T; GROUP];
 
+/// Entries of the records of one register of discs; those of blocks that the law does not read are zero.
+type RecordRegisters<R> = [<R as Registers>::V; ENTRIES];
+
 /// Environment of a law that evaluates one register of pairs.
-struct GatherEnv<'a, R: Registers, S> {
+struct GatherEnv<R: Registers> {
     registers: R,
-    discs: &'a DiscColumns<'a, S>,
-    own: &'a LaneArray<u32>,
-    partner: &'a LaneArray<u32>,
+    own: RecordRegisters<R>,
+    partner: RecordRegisters<R>,
+    per_time: f64,
     cell_offset: [R::V; 2],
     asked: ObservationRequest,
     penetration: Cell<R::V>,
@@ -133,40 +123,94 @@ struct GatherEnv<'a, R: Registers, S> {
     partner_sums: [Cell<R::V>; 3],
 }
 
-impl<R: Registers, S: Element> GatherEnv<'_, R, S> {
+impl<R: Registers> GatherEnv<R> {
     #[inline(always)]
-    fn gather(&self, column: &[S], discs: &LaneArray<u32>) -> R::V {
-        assemble(self.registers, |lane| {
-            // SAFETY: the positions and the columns of the fields that the law states have an entry for every disc and for the
-            // sentinels (checked by Sweep); `StatedEnv` rejects reads of other columns. Pairs are of discs (Finder's contract), and
-            // lanes without a pair have the sentinels.
-            R::Lane::from_f64(unsafe { column.get_unchecked(discs[lane] as usize) }.to_f64())
-        })
-    }
-
-    #[inline(always)]
-    fn field(&self, field: ParticleField, discs: &LaneArray<u32>) -> R::V {
-        let value = self.gather(self.discs.column(field), discs);
-        match field {
-            ParticleField::Velocity(_) | ParticleField::Omega => value * self.uniform(self.discs.per_time),
-            ParticleField::Radius
-            | ParticleField::InverseMass
-            | ParticleField::Mass
-            | ParticleField::Occupied => value,
+    fn field(&self, field: ParticleField, records: &RecordRegisters<R>) -> R::V {
+        let Some(entry) = RecordEntry::of_field(field) else {
+            // A sweep rejects laws that state such a field.
+            return self.uniform(f64::NAN);
+        };
+        let value = records[entry as usize];
+        match entry {
+            RecordEntry::Vx | RecordEntry::Vy | RecordEntry::Omega => value * self.uniform(self.per_time),
+            _ => value,
         }
     }
 }
 
-#[inline(always)]
-fn assemble<R: Registers>(registers: R, number: impl Fn(usize) -> R::Lane) -> R::V {
-    let mut lanes = MaybeUninit::<LaneArray<R::Lane>>::uninit();
-    let first = lanes.as_mut_ptr().cast::<R::Lane>();
-    for lane in 0..R::LANES {
-        // SAFETY: lane < LANES <= GROUP, the capacity of `lanes`.
-        unsafe { first.add(lane).write(number(lane)) };
+/// Number of entries up to the last that a law reads.
+const fn entries_read(fields: &[ParticleField]) -> usize {
+    let (mut i, mut count) = (0, 2);
+    while i < fields.len() {
+        if let Some(entry) = RecordEntry::of_field(fields[i])
+            && entry as usize >= count
+        {
+            count = entry as usize + 1;
+        }
+        i += 1;
     }
-    // SAFETY: the loop has written the first LANES entries.
-    unsafe { registers.load(first) }
+    count
+}
+
+/// Loads the first `entries` entries of the records of some discs.
+///
+/// # Safety
+/// There is a record with these entries for every disc.
+#[inline(always)]
+unsafe fn load_records<R: Registers, S: Element>(
+    registers: R,
+    entries: usize,
+    blocks: [*const S; MOST_BLOCKS],
+    discs: &LaneArray<u32>,
+) -> RecordRegisters<R> {
+    let mut record = [registers.splat(R::Lane::default()); ENTRIES];
+    let numbers = block::<S>();
+    for number in 0..MOST_BLOCKS {
+        if number * numbers >= entries {
+            break;
+        }
+        let places = RecordPlaces { first: blocks[number].cast_mut(), stride: numbers, records: discs };
+        // SAFETY: the caller promises a block for every disc.
+        let loaded = unsafe { load_converted(registers, places) };
+        for k in 0..numbers {
+            record[number * numbers + k] = loaded[k];
+        }
+    }
+    record
+}
+
+/// Loads blocks of another precision.
+///
+/// # Safety
+/// As for [`Registers::load_blocks`].
+#[inline(always)]
+unsafe fn load_converted<R: Registers, S: Element>(
+    registers: R,
+    places: RecordPlaces<'_, S>,
+) -> [R::V; QUAD] {
+    let RecordPlaces { first, stride, records } = places;
+    if is_same_storage::<S, R::Lane>() {
+        // SAFETY: S is Lane, and the caller makes the same promise.
+        return unsafe { registers.load_blocks(RecordPlaces { first: first.cast(), stride, records }) };
+    }
+    let mut columns = [[R::Lane::default(); GROUP]; QUAD];
+    for lane in 0..R::LANES {
+        for k in 0..block::<S>() {
+            // SAFETY: the caller promises a block there.
+            let number = unsafe { *first.add(records[lane] as usize * stride + k) };
+            columns[k][lane] = R::Lane::from_f64(number.to_f64());
+        }
+    }
+    let [x, y, u, v] = &columns;
+    // SAFETY: each column has GROUP entries, and LANES <= GROUP.
+    unsafe {
+        [
+            registers.load(x.as_ptr()),
+            registers.load(y.as_ptr()),
+            registers.load(u.as_ptr()),
+            registers.load(v.as_ptr()),
+        ]
+    }
 }
 
 #[inline(always)]
@@ -177,28 +221,28 @@ fn spill<R: Registers>(registers: R, value: R::V) -> LaneArray<R::Lane> {
     lanes
 }
 
-impl<R: Registers, S: Element> Env<2> for &GatherEnv<'_, R, S> {
+impl<R: Registers> Env<2> for &GatherEnv<R> {
     type V = R::V;
     type Partner = ();
     const BOTH_PARTNERS: bool = true;
 
     #[inline(always)]
     fn own_position(self) -> [R::V; 2] {
-        [self.gather(self.discs.position[0], self.own), self.gather(self.discs.position[1], self.own)]
+        [self.own[RecordEntry::X as usize], self.own[RecordEntry::Y as usize]]
     }
     #[inline(always)]
     fn own(self, field: ParticleField) -> R::V {
-        self.field(field, self.own)
+        self.field(field, &self.own)
     }
     #[inline(always)]
     fn displacement(self, own: [R::V; 2], (): ()) -> [R::V; 2] {
-        let x = (own[0] - self.gather(self.discs.position[0], self.partner)) - self.cell_offset[0];
-        let y = (own[1] - self.gather(self.discs.position[1], self.partner)) - self.cell_offset[1];
+        let x = (own[0] - self.partner[RecordEntry::X as usize]) - self.cell_offset[0];
+        let y = (own[1] - self.partner[RecordEntry::Y as usize]) - self.cell_offset[1];
         [x, y]
     }
     #[inline(always)]
     fn partner(self, field: ParticleField, (): ()) -> R::V {
-        self.field(field, self.partner)
+        self.field(field, &self.partner)
     }
     #[inline(always)]
     fn uniform(self, value: f64) -> R::V {
@@ -267,31 +311,39 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
 }
 
 impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P, L, Q> {
-    #[allow(clippy::needless_range_loop, reason = "several columns share one index")]
     #[inline(always)]
     fn evaluate_register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut BandNotes) {
         let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
-        let mut cell_offsets = [[P::default(); GROUP]; 2];
+        let mut cell_offset = [0; GROUP];
         // Nearly all registers are full: the compiler unrolls a loop over all lanes.
         for lane in 0..R::LANES {
             if lane == count {
                 break;
             }
-            ([own[lane], partner[lane]], [cell_offsets[0][lane], cell_offsets[1][lane]]) =
-                self.pairs.pair(first + lane);
+            ([own[lane], partner[lane]], cell_offset[lane]) = self.pairs.pair(first + lane);
         }
+        let cell_offsets = self.pairs.cell_offsets().as_ptr().cast::<P>().cast_mut();
+        let cell_offsets = RecordPlaces { first: cell_offsets, stride: QUAD, records: &cell_offset };
+        // SAFETY: the numbers of a finder's pairs are those of cell offsets, and a pair's finder has the first.
+        let cell_offset = unsafe { registers.load_blocks(cell_offsets) };
+        let entries = const { entries_read(L::FIELDS) };
+        // SAFETY: Sweep has checked that there is a record for every disc and sentinel, with all entries that the law states.
+        // Pairs are of discs (Finder's contract), and lanes without a pair have the sentinels.
+        let (own_record, partner_record) = unsafe {
+            (
+                load_records(registers, entries, self.state.blocks, &own),
+                load_records(registers, entries, self.state.blocks, &partner),
+            )
+        };
         let zero = || Cell::new(registers.splat(P::default()));
-        // SAFETY: each array has GROUP entries, and LANES <= GROUP.
-        let cell_offset =
-            unsafe { [registers.load(cell_offsets[0].as_ptr()), registers.load(cell_offsets[1].as_ptr())] };
         let gathered = GatherEnv {
             registers,
-            discs: self.discs,
-            own: &own,
-            partner: &partner,
-            cell_offset,
+            own: own_record,
+            partner: partner_record,
+            per_time: self.state.per_time,
+            cell_offset: [cell_offset[0], cell_offset[1]],
             asked: self.asked,
             penetration: zero(),
             power: zero(),
@@ -300,44 +352,24 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P,
             own_sums: [zero(), zero(), zero()],
             partner_sums: [zero(), zero(), zero()],
         };
-        // Only through `StatedEnv`, which makes the unchecked reads of columns sound for any law.
+        // Only through `StatedEnv`: a law has the entries that it states, and no others.
         let env = StatedEnv::new(&gathered, self.law);
         let disc = self.law.own(env);
         self.law.pair(env, (), &disc);
 
-        let (mut own_sums, mut partner_sums) = ([[P::default(); GROUP]; 3], [[P::default(); GROUP]; 3]);
-        let mut magnitude = registers.splat(P::default());
-        for sum in L::SUMS {
-            let sum = sum.column::<2>();
-            let value = gathered.own_sums[sum].get();
-            magnitude = magnitude + value.abs();
-            own_sums[sum] = spill(registers, value);
-            partner_sums[sum] = spill(registers, gathered.partner_sums[sum].get());
-        }
+        let [x, y, torque] = &gathered.own_sums;
+        let (x, y, torque) = (x.get(), y.get(), torque.get());
+        let magnitude = (x.abs() + y.abs()) + torque.abs();
+        let nothing = registers.splat(P::default());
+        let added = [x, y, torque, nothing];
+        let [x, y, torque] = &gathered.partner_sums;
+        let subtracted = [x.get(), y.get(), torque.get(), nothing];
+        let sums = |records| RecordPlaces { first: self.sums.0, stride: QUAD, records };
+        let places = [sums(&own), sums(&partner)];
         // One contact after the other, own before partner: the order of summation does not depend on the register width.
-        for lane in 0..R::LANES {
-            if lane == count {
-                break;
-            }
-            for sum in L::SUMS {
-                let sum = sum.column::<2>();
-                // SAFETY: Sweep has checked that the column of every sum that L states has an entry for every disc, and a
-                // finder's pairs are of discs; no other thread adds to discs of the rows that this one sweeps.
-                unsafe {
-                    let to = &mut *self.sums.0[sum].add(own[lane] as usize);
-                    *to = *to + own_sums[sum][lane];
-                }
-            }
-            for sum in L::SUMS {
-                let sum = sum.column::<2>();
-                // SAFETY: the partner is a disc too, in these rows or those ahead of them, to which no other thread adds at this
-                // stage; the reference to the own disc's sum has ended.
-                unsafe {
-                    let to = &mut *self.sums.0[sum].add(partner[lane] as usize);
-                    *to = *to - partner_sums[sum][lane];
-                }
-            }
-        }
+        // SAFETY: Sweep has checked that there are sums for every disc, and a finder's pairs are of discs. Own discs are in the rows
+        // that this thread sweeps, partners in these or those ahead of them: no other thread adds to either at this stage.
+        unsafe { registers.add_quads(count, [added, subtracted], places) };
         // Pair by pair. Two touching fixed discs have no effective mass; any other pair without a finite force is listed below.
         if self.asked.dissipation {
             add(&spill(registers, gathered.power.get()), count, &mut notes.dissipated);

@@ -1,6 +1,7 @@
 //! Interface between a sweep and the search that finds its pairs.
 
 use super::pairs::{PairBuffer, PairSequence};
+use super::records::StateRecords;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::ProgramError;
@@ -72,7 +73,8 @@ impl RankShare {
 /// Finds pairs of discs that may touch: every touching pair once, and any number of others.
 ///
 /// # Safety
-/// Pairs are of discs below [`discs`](Self::discs), in the rows documented: sweeps read and add unchecked.
+/// Pairs are of discs below [`discs`](Self::discs), in the rows documented, with numbers of cell offsets that exist: sweeps read
+/// and add unchecked.
 pub unsafe trait Finder<S, P: Precision>: Sync {
     /// Buffer for the pairs found.
     type Found: Clone + std::fmt::Debug + Default + Send;
@@ -90,7 +92,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     /// [`ProgramError::NoSuchInstructionSet`].
     fn find(
         &self,
-        positions: [&[S]; 2],
+        discs: &StateRecords<S>,
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut Self::Found,
@@ -112,7 +114,7 @@ pub unsafe trait Finder<S, P: Precision>: Sync {
     /// Replaces the contents of `found` by all pairs of a part. The parts of some rows, one after the other, give the pairs of
     /// [`find`](Self::find) in the same order.
     #[inline]
-    fn find_part(&self, _positions: [&[S]; 2], _part: Range<usize>, _found: &mut Self::Found) {}
+    fn find_part(&self, _discs: &StateRecords<S>, _part: Range<usize>, _found: &mut Self::Found) {}
 
     /// Appends pairs of some rows that the regular search does not find.
     #[inline]

@@ -4,7 +4,7 @@
 //! for every band of rows, in two stages:            Sweep      bands.rs
 //!     until the rows are searched:
 //!         find some 500 pairs that may touch        Finder     lattice/, sectors.rs, verlet.rs
-//!         law for a register of pairs at a time     Evaluate   contacts.rs
+//!         law for a register of pairs at a time     Evaluate   contacts.rs, of records (records.rs)
 //!         add to the sums, pair by pair
 //! for every disc:                                   Advance    advance.rs
 //!     correct with its sums, predict the next step, list it if it left its cell
@@ -36,14 +36,15 @@ mod grid;
 pub mod lattice;
 mod near;
 mod pairs;
+mod records;
 mod sectors;
 mod verlet;
 
 pub use advance::{Advance, DisplacementLimit, EquationOfMotion, PassReport, PositionCopies};
 pub use bands::{BandReport, Sweep, SweepReport};
-pub use contacts::DiscColumns;
 pub use finder::{Finder, RankShare, RowLayout, SearchCursor};
 pub use grid::{CellGrid, GridError};
-pub use pairs::{PairBuffer, PairSequence, SENTINELS};
+pub use pairs::{CellOffset, PairBuffer, PairSequence, SENTINELS};
+pub use records::{ForceRecords, RecordEntry, StateRecords};
 pub use sectors::Sectors;
 pub use verlet::VerletList;

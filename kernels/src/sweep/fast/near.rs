@@ -2,39 +2,39 @@
 
 use super::finder::{AT_ONCE, MARGIN, SearchCursor};
 use super::grid::CellGrid;
-use super::pairs::{CandidatePair, PairBuffer, SENTINELS};
+use super::pairs::{CandidatePair, PairBuffer, cell_offset};
+use super::records::StateRecords;
 use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
 
 /// Lists those of the given pairs that are nearer than a limit.
-pub(super) struct DistanceFilter<'a, S, P> {
-    positions: [&'a [S]; 2],
+pub(super) struct DistanceFilter<'a, S> {
+    discs: &'a StateRecords<S>,
     cell_offsets: [[f64; 2]; 5],
     limit: f64,
-    touches: &'a mut Vec<CandidatePair<P>>,
+    touches: &'a mut Vec<CandidatePair>,
 }
 
-impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
-    /// Filter for `discs` discs that touch at most at a distance `reach` (length).
+impl<'a, S: Element> DistanceFilter<'a, S> {
+    /// Filter for `count` discs that touch at most at a distance `reach` (length).
     ///
     /// # Panics
-    /// If there is not a position for every disc and sentinel.
+    /// If there is another number of records.
     #[inline]
-    pub(super) fn new(
-        positions: [&'a [S]; 2],
-        discs: usize,
+    pub(super) fn new<P: Precision>(
+        discs: &'a StateRecords<S>,
+        count: usize,
         grid: &CellGrid,
         reach: f64,
         touches: &'a mut PairBuffer<P>,
     ) -> Self {
-        assert!(
-            positions.iter().all(|position| position.len() == discs + SENTINELS),
-            "a column of positions does not have an entry for each of {discs} discs and {SENTINELS} sentinels"
-        );
-        touches.0.clear();
-        let limit = reach * reach * MARGIN;
-        DistanceFilter { positions, cell_offsets: grid.cell_offsets(), limit, touches: &mut touches.0 }
+        assert_eq!(discs.discs(), count, "the search and the records must have the same discs");
+        let (limit, cell_offsets) = (reach * reach * MARGIN, grid.cell_offsets());
+        touches.pairs.clear();
+        touches.cell_offsets.clear();
+        touches.cell_offsets.extend(cell_offsets.map(cell_offset));
+        DistanceFilter { discs, cell_offsets, limit, touches: &mut touches.pairs }
     }
 
     /// Searches rows piece by piece (`pieces` of a row) until enough pairs are listed.
@@ -65,8 +65,8 @@ impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     /// `disc` is one of the discs.
     #[inline(always)]
     pub(super) unsafe fn disc_position(&self, disc: u32) -> [f64; 2] {
-        // SAFETY: every disc has a position, as `new` has checked.
-        self.positions.map(|position| unsafe { position.get_unchecked(disc as usize) }.to_f64())
+        // SAFETY: the caller promises a disc, and every disc has a record, as `new` has checked.
+        unsafe { self.discs.position_unchecked(disc) }
     }
 
     /// Lists a pair if it is near enough.
@@ -76,15 +76,15 @@ impl<'a, S: Element, P: Precision> DistanceFilter<'a, S, P> {
     #[inline(always)]
     pub(super) unsafe fn list_if_near(&mut self, first: u32, at: [f64; 2], second: u32, cell_offset: usize) {
         // SAFETY: the caller promises that `second` is a disc and that `cell_offset` is below 5, the length of `cell_offsets`.
-        let (there, cell_offset) =
+        let (there, along) =
             unsafe { (self.disc_position(second), *self.cell_offsets.get_unchecked(cell_offset)) };
-        let (dx, dy) = ((at[0] - there[0]) - cell_offset[0], (at[1] - there[1]) - cell_offset[1]);
+        let (dx, dy) = ((at[0] - there[0]) - along[0], (at[1] - there[1]) - along[1]);
         let length = self.touches.len();
         if length == self.touches.capacity() {
             self.touches.reserve(AT_ONCE);
         }
         // Written in either case, which avoids an unpredictable branch.
-        let touch = CandidatePair { discs: [first, second], cell_offset: cell_offset.map(P::from_f64) };
+        let touch = CandidatePair { discs: [first, second], cell_offset: cell_offset as u32 };
         // SAFETY: `reserve` above has left capacity for one more, and it is written before the length covers it.
         unsafe {
             self.touches.as_mut_ptr().add(length).write(touch);

@@ -28,6 +28,7 @@ use super::finder::{Finder, RowLayout, SearchCursor};
 use super::grid::{AHEAD, CellGrid};
 use super::near::DistanceFilter;
 use super::pairs::{PairBuffer, PairSequence};
+use super::records::StateRecords;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::isa::{Element, ProgramError};
@@ -308,13 +309,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
 
     fn find(
         &self,
-        positions: [&[S]; 2],
+        discs: &StateRecords<S>,
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = DistanceFilter::new(positions, self.sector.len(), &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(discs, self.sector.len(), &self.grid, self.reach, found);
         near.search(
             rows,
             cursor,
@@ -346,8 +347,8 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         self.members_of_rows(rows)
     }
 
-    fn find_part(&self, positions: [&[S]; 2], part: Range<usize>, found: &mut PairBuffer<P>) {
-        let mut near = DistanceFilter::new(positions, self.sector.len(), &self.grid, self.reach, found);
+    fn find_part(&self, discs: &StateRecords<S>, part: Range<usize>, found: &mut PairBuffer<P>) {
+        let mut near = DistanceFilter::new(discs, self.sector.len(), &self.grid, self.reach, found);
         let (mut last, mut at) = (NOWHERE, [0.0; 2]);
         self.pairs_of_members(part, |first, second, cell_offset| {
             // SAFETY: `pairs_of_members` gives members of sectors, which are discs, and numbers of cell offsets below 5.

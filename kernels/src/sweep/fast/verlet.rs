@@ -19,6 +19,7 @@ use super::finder::{Finder, RowLayout, SearchCursor};
 use super::grid::CellGrid;
 use super::near::DistanceFilter;
 use super::pairs::{DiscPair, PairBuffer, PairSequence};
+use super::records::StateRecords;
 use super::sectors::Sectors;
 use crate::InstructionSet;
 use crate::backend::Precision;
@@ -59,8 +60,8 @@ impl VerletList {
     /// Lists the pairs of the discs in sectors that are at most `skin` (length) from contact.
     ///
     /// # Panics
-    /// If the sectors are too narrow for that, or there are not as many positions as discs and sentinels.
-    pub fn new<S: Element>(sectors: &Sectors, positions: [&[S]; 2], skin: f64) -> Self {
+    /// If the sectors are too narrow for that, or a disc has no record.
+    pub fn new<S: Element>(sectors: &Sectors, discs: &StateRecords<S>, skin: f64) -> Self {
         let (grid, reach) = (*sectors.grid(), sectors.reach());
         let limit = (reach + skin) * (reach + skin);
         assert!(
@@ -71,8 +72,8 @@ impl VerletList {
             }),
             "sectors too narrow for the reach and the skin"
         );
+        let at = |disc: u32| discs.position(disc as usize);
         let discs = sectors.disc_count();
-        let at = |disc: u32| positions.map(|position| position[disc as usize].to_f64());
         let cell_offsets = grid.cell_offsets();
         let part = |rows: Range<usize>| {
             let mut part = RowLists::default();
@@ -146,13 +147,13 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
 
     fn find(
         &self,
-        positions: [&[S]; 2],
+        discs: &StateRecords<S>,
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = DistanceFilter::new(positions, self.discs, &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(discs, self.discs, &self.grid, self.reach, found);
         let pairs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
         near.search(
             rows,

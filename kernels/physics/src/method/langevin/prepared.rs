@@ -10,7 +10,7 @@ use super::scene::LangevinScene;
 use super::simulation;
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
-use crate::method::pairwise::{Dynamics, PairForcesTask};
+use crate::method::pairwise::{Dynamics, PairForcesTask, StateSize};
 use crate::method::{
     Fact, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable, VectorProgram,
 };
@@ -107,8 +107,12 @@ impl CheckedLangevin {
 
     fn memory(&self) -> MemoryForecast {
         let count = self.particles.len() as f64;
-        // Rows of the state and the sums, one more for sorting each of them, and the positions of the last list build.
-        let rows = if matches!(self.found, ChosenSearch::Lists(..)) { 11.0 } else { 9.0 };
+        let size = StateSize { discs: count, freedoms: 2.0, vary: false, carried: 2.0, number: [8.0, 8.0] };
+        let [mut rows, bytes] = size.rows();
+        if let ChosenSearch::Lists(..) = self.found {
+            // The positions of the last list build.
+            rows += 2.0 * 8.0 * count / bytes;
+        }
         // Ids and numbers; neighbour lists.
         let (engine, cells) = match &self.found {
             ChosenSearch::Sectors(grid) => (99.0 * count, 8.0 * grid.counts.iter().product::<usize>() as f64),
@@ -125,11 +129,11 @@ impl CheckedLangevin {
         // Three copies of the scene's particles, another while they are observed, the frame being written, and the sorting order.
         let particles = (6.0 * size_of::<Particle>() as f64 + 2.0 * 16.0 + 4.0) * count;
         MemoryForecast {
-            needed: (PROGRAM + rows * row(8.0 * count) + engine + cells + particles) as u64,
+            needed: (PROGRAM + rows * row(bytes) + engine + cells + particles) as u64,
             available: available(),
             what: format!("{count} particles"),
             remedy: "use fewer particles",
-            ranks: RankMemory::in_bands(count, cells, [rows, 8.0 * count]),
+            ranks: RankMemory::in_bands(count, cells, [rows, bytes]),
         }
     }
 

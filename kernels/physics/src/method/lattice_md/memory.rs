@@ -9,6 +9,7 @@ use super::check::CheckedGranularScene;
 use super::options::ProgramVersion;
 use super::{ContactSearch, DiscUniformity, FastSearch, GranularModel, GranularScheme, Lengths, programs};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
+use crate::method::pairwise::StateSize;
 use crate::near::NeighbourSearch;
 use crate::particles::Particle;
 use crate::scene::Precision;
@@ -28,7 +29,7 @@ pub fn foreseen(checked: &CheckedGranularScene) -> MemoryForecast {
     let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
     let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed();
     let near = NeighbourSearch::bytes(checked.particles.len()) as f64;
-    let (mut cells, mut rows) = (0.0, 0.0);
+    let (mut cells, mut rows) = (0.0, [0.0; 2]);
     let ([engine, columns], observed) = match contacts(checked) {
         ContactSearch::Fast(search) => {
             (cells, rows) = (of.cells(search), of.rows(search));
@@ -58,7 +59,7 @@ pub fn foreseen(checked: &CheckedGranularScene) -> MemoryForecast {
         what: format!("{} discs in {} cells", checked.particles.len(), checked.geometry.shape.cells()),
         remedy: "use fewer discs, a smaller box or machine.precision = \"f32\"; where most cells are empty, search.by = \
                  \"sectors\" needs no lattice",
-        ranks: RankMemory::in_bands(of.discs, cells, [rows, of.state * of.discs]),
+        ranks: RankMemory::in_bands(of.discs, cells, rows),
     }
 }
 
@@ -126,8 +127,9 @@ impl GranularSizes {
 
     /// Bytes that the fast engine allocates while discs are observed.
     fn observed(&self) -> f64 {
-        let corrected = 2.0 * self.freedoms();
-        (8.0 * (corrected + 3.0 + 2.0 * self.varying()) + 4.0) * self.discs
+        // Records of the corrected discs, their sums, and numbers.
+        let record = if self.varying() == 1.0 { 8.0 } else { 2.0 * self.freedoms() };
+        (8.0 * (record + 4.0) + 4.0) * self.discs
     }
 
     /// Bytes of the temporary parts of the lists that the fast engine rebuilds when a run resumes.
@@ -140,10 +142,8 @@ impl GranularSizes {
     /// Bytes of a fast method beside its cells, and of the columns of its checkpoints.
     fn fast(&self, search: FastSearch) -> [f64; 2] {
         let derivatives = self.freedoms() * self.carried();
-        let [of_state, of_forces] = [self.state, self.force].map(|bytes| row(bytes * self.discs));
-        // One column of each kind is scratch space for sorting discs.
-        let columns =
-            (derivatives + 3.0 * self.varying() + 1.0) * of_state + 8.0 * self.discs + 4.0 * of_forces;
+        let [rows, bytes] = self.state_size().rows();
+        let columns = rows * row(bytes) + 8.0 * self.discs;
         let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
         let found = match search {
             FastSearch::Lattice(_) => 4.0 * self.discs,
@@ -151,16 +151,27 @@ impl GranularSizes {
             FastSearch::Lists { skin } => {
                 written += 2.0 * self.state;
                 let pairs = 0.5 * self.neighbours(self.reach + skin);
-                2.0 * of_state + (8.0 + 8.0 * pairs) * self.discs
+                2.0 * row(self.state * self.discs) + (8.0 + 8.0 * pairs) * self.discs
             }
         };
         [columns + found, written * self.discs]
     }
 
-    /// Rows of the discs in a fast method: the state, the sums, one scratch row of each, and the positions at which lists were built.
-    fn rows(&self, search: FastSearch) -> f64 {
-        let lists = if let FastSearch::Lists { .. } = search { 2.0 } else { 0.0 };
-        self.freedoms() * self.carried() + 3.0 * self.varying() + 1.0 + 4.0 + lists
+    fn state_size(&self) -> StateSize {
+        StateSize {
+            discs: self.discs,
+            freedoms: self.freedoms(),
+            vary: self.model.discs == DiscUniformity::Varying,
+            carried: self.carried(),
+            number: [self.state, self.force],
+        }
+    }
+
+    /// Rows of the discs in a fast method, and the bytes of each: the state, the sums, scratch space, and the positions at which lists were built.
+    fn rows(&self, search: FastSearch) -> [f64; 2] {
+        let [rows, bytes] = self.state_size().rows();
+        let lists = if let FastSearch::Lists { .. } = search { 2.0 * self.state * self.discs } else { 0.0 };
+        [rows + lists / bytes, bytes]
     }
 
     /// Number of derivatives carried from step to step.

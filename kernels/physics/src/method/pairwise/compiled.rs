@@ -9,9 +9,11 @@ use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Scheme;
-use stripmine_kernels::isa::{AlignedColumn, ProgramError};
+use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Law, ObservationRequest};
-use stripmine_kernels::sweep::fast::{Advance, DiscColumns, EquationOfMotion, PassReport, SweepReport};
+use stripmine_kernels::sweep::fast::{
+    Advance, EquationOfMotion, ForceRecords, PassReport, StateRecords, SweepReport,
+};
 
 /// [`Dynamics`] of any method, for an engine with state of precision `S`, forces of precision `P` and search `Q`.
 pub(super) trait CompiledDynamics<S, P, Q>: Send + Sync {
@@ -71,7 +73,7 @@ pub(super) struct PassArguments<'a, S, P, Q> {
     pub(super) discs: Range<usize>,
     pub(super) system: &'a PairSystem,
     pub(super) state: &'a mut MovingDiscs<S>,
-    pub(super) sums: &'a mut [AlignedColumn<P>; 3],
+    pub(super) sums: &'a mut ForceRecords<P>,
     pub(super) search: &'a mut Q,
     pub(super) steps: u64,
     pub(super) set: InstructionSet,
@@ -82,16 +84,18 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SchemeTask for PassArgumen
 
     fn with<C: Scheme>(self, scheme: C) -> Self::Output {
         let PassArguments { discs, system, state, sums, search, steps, set } = self;
-        let (columns, inverse, ids) = state.for_advance();
+        let (records, higher, inverse_inertia, ids) = state.for_advance();
         let (limit, copies) = search.displacement_limit();
         let advance = Advance {
             motion: &motion(system, scheme),
-            state: columns
+            freedoms: system.freedoms,
+            records,
+            higher: higher
                 .iter_mut()
                 .map(|row| row.iter_mut().map(|column| &mut **column).collect())
                 .collect(),
-            sums: sums.iter_mut().take(system.freedoms).map(|sum| &mut **sum).collect(),
-            inverse,
+            sums,
+            inverse_inertia,
             discs,
             step: steps,
             ids,
@@ -106,7 +110,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SchemeTask for PassArgumen
 pub(super) struct CorrectionArguments<'a, S, P> {
     pub(super) system: &'a PairSystem,
     pub(super) state: &'a MovingDiscs<S>,
-    pub(super) sums: &'a [P],
+    pub(super) sums: &'a ForceRecords<P>,
     pub(super) steps: u64,
     pub(super) freedom: usize,
     pub(super) first: usize,
@@ -120,8 +124,8 @@ impl<S: Precision, P: Precision> SchemeTask for CorrectionArguments<'_, S, P> {
         let CorrectionArguments { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
         let motion = motion(system, scheme);
         for (disc, (value, rate)) in (first..).zip(values.iter_mut().zip(rates)) {
-            let force = S::from_f64(sums[disc].to_f64());
-            let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom)[disc]);
+            let force = S::from_f64(sums.of(disc)[freedom].to_f64());
+            let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom, disc));
             let (who, row) = ((steps, state.id(disc)), state.row(freedom, disc));
             let corrected = motion.corrected(who, freedom, row, force, inverse);
             [*value, *rate] = state.value_and_rate(&corrected);
@@ -131,9 +135,8 @@ impl<S: Precision, P: Precision> SchemeTask for CorrectionArguments<'_, S, P> {
 
 /// Arguments of a force sweep.
 pub(super) struct SweepArguments<'a, S, P, Q> {
-    pub(super) system: &'a PairSystem,
     pub(super) state: &'a MovingDiscs<S>,
-    pub(super) sums: &'a mut [AlignedColumn<P>; 3],
+    pub(super) sums: &'a mut ForceRecords<P>,
     pub(super) search: &'a mut Q,
     pub(super) asked: ObservationRequest,
     pub(super) set: InstructionSet,
@@ -143,15 +146,14 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> LawTask for SweepArguments
     type Output = Result<SweepReport, ProgramError>;
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
-        let sums = self.sums.each_mut().map(|sum| &mut **sum);
-        self.search.sweep(&law, &self.state.discs(self.system), sums, self.asked, self.set)
+        self.search.sweep(&law, &self.state.records, self.sums, self.asked, self.set)
     }
 }
 
 /// Arguments of an observing sweep.
 pub(super) struct ObservationArguments<'a, S, P, Q> {
     pub(super) search: &'a Q,
-    pub(super) discs: &'a DiscColumns<'a, f64>,
+    pub(super) discs: &'a StateRecords<f64>,
     pub(super) moved: f64,
     pub(super) set: InstructionSet,
     pub(super) precisions: PhantomData<(S, P)>,

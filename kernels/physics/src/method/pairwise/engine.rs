@@ -15,10 +15,10 @@ use std::sync::Arc;
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::isa::{AlignedColumn, ProgramError};
+use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::ObservationRequest;
-use stripmine_kernels::sweep::fast::{PassReport, SweepReport};
-use stripmine_kernels::{keep_awake, over_parts, reorder_into, single_threaded_if};
+use stripmine_kernels::sweep::fast::{ForceRecords, PassReport, SweepReport};
+use stripmine_kernels::{keep_awake, over_parts, single_threaded_if};
 
 /// Number of discs below which one thread does all the work, because a step is over before other threads start. Measured on two cores: 2000 discs
 /// took twice as long on two threads, 4000 as long as on one, 8000 were faster by a fifth.
@@ -27,8 +27,8 @@ const FEW: usize = 5000;
 /// Dynamics, system, and the instruction set of their loops.
 pub(super) type EngineParts<S, P, Q> = (Arc<dyn CompiledDynamics<S, P, Q>>, PairSystem, InstructionSet);
 
-/// First alignment number of the sums; columns of the state have smaller ones.
-const SUMS_FROM: usize = 24;
+/// Alignment number of the sums; columns of the state have smaller ones.
+const SUMS: usize = 24;
 
 /// Discs with state of precision `S`, forces of precision `P` and search `Q`.
 pub(crate) struct PairEngine<S, P, Q> {
@@ -38,10 +38,7 @@ pub(crate) struct PairEngine<S, P, Q> {
     /// All particles of the scene at its start.
     pub(super) start: Arc<Particles>,
     pub(super) state: MovingDiscs<S>,
-    /// Force along x, along y, torque.
-    pub(super) sums: [AlignedColumn<P>; 3],
-    /// Scratch column, swapped with one of the sums when discs are sorted.
-    spare: AlignedColumn<P>,
+    pub(super) sums: ForceRecords<P>,
     pub(super) search: Q,
     /// Changes of cells since the discs were sorted.
     pub(super) changes: usize,
@@ -84,11 +81,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         elapsed: Elapsed,
     ) -> Self {
         let carried = dynamics.carried(system.dt);
-        let [sums @ .., spare] = sums_of(members.numbers.len());
+        let sums = ForceRecords::zeros(SUMS, members.numbers.len());
         let mut engine = PairEngine {
             state: MovingDiscs::new(&system, &carried, &start, members),
             sums,
-            spare,
             elapsed,
             dynamics,
             system,
@@ -107,7 +103,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Replaces the members; the new ones are at the start and not yet in cells.
     pub(super) fn replace_members(&mut self, members: Members, search: Q) {
         let carried = self.dynamics.carried(self.system.dt);
-        [self.sums[0], self.sums[1], self.sums[2], self.spare] = sums_of(members.numbers.len());
+        self.sums = ForceRecords::zeros(SUMS, members.numbers.len());
         self.state = MovingDiscs::new(&self.system, &carried, &self.start, members);
         self.search = search;
         self.changes = 0;
@@ -160,10 +156,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         }
         self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
-        for sum in &mut self.sums {
-            reorder_into(&mut self.spare, sum, &order);
-            std::mem::swap(sum, &mut self.spare);
-        }
+        self.sums.renumber(&order);
         self.search.make_lists(&self.state);
         self.boundary_candidates = self.discs_near_open_sides();
         self.changes = 0;
@@ -208,10 +201,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     }
 
     pub(super) fn add_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, ProgramError> {
-        let PairEngine { dynamics, system, state, sums, search, set, .. } = self;
+        let PairEngine { dynamics, state, sums, search, set, .. } = self;
         // Sums of owned discs are zero already.
-        sums.iter_mut().for_each(|sum| sum[state.moving()..].fill(P::default()));
-        dynamics.sweep(SweepArguments { system, state, sums, search, asked, set: *set })
+        sums.clear(state.moving()..state.len());
+        dynamics.sweep(SweepArguments { state, sums, search, asked, set: *set })
     }
 
     /// Fails at pairs with a grain whose force is not finite.
@@ -233,7 +226,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Returns the force along x and y and the torque on a disc.
     pub(super) fn force_on(&self, disc: usize) -> [f64; 3] {
-        [0, 1, 2].map(|sum| self.sums[sum][disc].to_f64())
+        self.sums.of(disc).map(|sum| sum.to_f64())
     }
 
     /// Computes a degree of freedom and its rate for discs from `first` on at the end of the step. The state is not changed.
@@ -248,7 +241,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.dynamics.correct(CorrectionArguments {
             system,
             state,
-            sums: &sums[freedom],
+            sums,
             steps,
             freedom,
             first,
@@ -292,9 +285,4 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> NameableDiscs for PairEngi
     fn radius(&self, disc: usize) -> f64 {
         self.state.radius(disc)
     }
-}
-
-/// Sums and their scratch column for a number of discs, aligned after the columns of the state.
-fn sums_of<P: Precision>(discs: usize) -> [AlignedColumn<P>; 4] {
-    [0, 1, 2, 3].map(|number| AlignedColumn::zeros(SUMS_FROM + number, discs))
 }

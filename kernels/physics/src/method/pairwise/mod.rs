@@ -40,6 +40,7 @@ pub use elapsed::Elapsed;
 pub(super) use engine::PairEngine;
 pub(crate) use forces::PairForcesTask;
 pub(super) use ranked::begin;
+pub(crate) use state::StateSize;
 pub(crate) use state_form::{CarriedQuery, CarriedState};
 pub(crate) use stepping::{GravityWork, RemovableDiscs, SteppingDiscs};
 pub use timings::{HaloTraffic, Phase, Timings};

@@ -1,7 +1,7 @@
 //! Observation of the discs at the end of a step. The engine is not changed.
 //!
 //! ```text
-//! corrected      columns in double precision, in the order in memory     in parts of them, on all threads
+//! corrected      records in double precision, in the order in memory     in parts of them, on all threads
 //! grains         sums over the grains, in the scene's order              in parts of the scene, on all threads
 //! contacts       a sweep of the search over the corrected positions      in bands, on all threads
 //! ```
@@ -18,15 +18,12 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
-use stripmine_kernels::sweep::fast::{DiscColumns, SENTINELS, SweepReport};
+use stripmine_kernels::sweep::fast::{RecordEntry, StateRecords, SweepReport};
 use stripmine_kernels::{in_parts, in_pieces, over_parts, single_threaded_if};
 
-/// All discs at the end of a step, one entry for each disc in memory order, followed by sentinels.
+/// All discs at the end of a step, in memory order.
 pub(super) struct CorrectedDiscs {
-    pub(super) position: [Vec<f64>; 2],
-    pub(super) velocity: [Vec<f64>; 2],
-    /// Empty if discs do not rotate.
-    pub(super) omega: Vec<f64>,
+    pub(super) records: StateRecords<f64>,
     /// Largest displacement by the correction (length).
     moved: f64,
 }
@@ -35,23 +32,40 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Computes the discs at the end of the step.
     pub(super) fn corrected_discs(&self) -> CorrectedDiscs {
         single_threaded_if(self.is_small(), || {
+            let (system, state, discs) = (&self.system, &self.state, self.state.len());
+            let vary = system.inertia == Inertia::Varying;
+            let mut records = StateRecords::zeros(0, discs, [system.freedoms == 3, vary], 1.0);
             let mut moved = [0.0; 2];
-            let mut column = |freedom: usize| {
-                let [mut value, mut rate] = self.corrected_column(freedom);
+            for freedom in 0..system.freedoms {
+                let [values, rates] = self.corrected_column(freedom);
                 if freedom < 2 {
-                    let before = self.state.places()[freedom];
-                    let changes = value.iter().zip(before).map(|(now, before)| (now - before.to_f64()).abs());
+                    let along = |disc: usize| state.place(disc)[freedom];
+                    let changes = values.iter().enumerate().map(|(disc, now)| (now - along(disc)).abs());
                     moved[freedom] = changes.fold(0.0, f64::max);
                 }
-                // The sentinels are farther apart than any pair acts.
-                let far = if freedom == 0 { 4.0 * self.system.reach } else { 0.0 };
-                value.extend([far, 0.0]);
-                rate.extend([0.0; SENTINELS]);
-                [value, rate]
-            };
-            let [[x, vx], [y, vy]] = [0, 1].map(&mut column);
-            let [_, omega] = if self.system.freedoms == 3 { column(2) } else { [vec![], vec![]] };
-            CorrectedDiscs { position: [x, y], velocity: [vx, vy], omega, moved: moved[0].hypot(moved[1]) }
+                for (k, column) in [values, rates].iter().enumerate() {
+                    // The sentinels are at rest.
+                    let of = |disc: usize| column.get(disc).copied().unwrap_or(0.0);
+                    records.fill(RecordEntry::of(freedom, k), of);
+                }
+            }
+            // The sentinels are farther apart than any pair acts.
+            records.set(RecordEntry::X, discs, 4.0 * system.reach);
+            if vary {
+                let disc = |disc: usize| &self.start.all()[state.number(disc)];
+                let inverse_mass =
+                    |disc: &Particle| if disc.kind == ParticleKind::Grain { 1.0 / disc.mass } else { 0.0 };
+                records.fill(RecordEntry::Radius, |at| {
+                    if at < discs { disc(at).radius } else { 0.5 * system.reach }
+                });
+                records.fill(
+                    RecordEntry::InverseMass,
+                    |at| {
+                        if at < discs { inverse_mass(disc(at)) } else { 1.0 }
+                    },
+                );
+            }
+            CorrectedDiscs { records, moved: moved[0].hypot(moved[1]) }
         })
     }
 
@@ -173,9 +187,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Returns a disc at the end of the step.
     pub(super) fn step_end_disc(&self, corrected: &CorrectedDiscs, disc: usize) -> StepEndDisc {
-        let [position, velocity] = [&corrected.position, &corrected.velocity]
-            .map(|columns| columns.each_ref().map(|along| along[disc]));
-        let omega = corrected.omega.get(disc).copied().unwrap_or(0.0);
+        let records = &corrected.records;
+        let [position, velocity] =
+            [0, 1].map(|k| [0, 1].map(|axis| records.get(RecordEntry::of(axis, k), disc)));
+        let omega = if self.system.freedoms == 3 { records.get(RecordEntry::Omega, disc) } else { 0.0 };
         StepEndDisc { position: self.absolute_position(disc, position), velocity, omega }
     }
 
@@ -188,30 +203,9 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     /// Sweeps all pairs at the end of the step.
     pub(super) fn contacts_met(&self, corrected: &CorrectedDiscs) -> SweepReport {
         single_threaded_if(self.is_small(), || {
-            let (mut radius, mut inverse_mass) = (vec![], vec![]);
-            if self.system.inertia == Inertia::Varying {
-                [radius, inverse_mass] = [0, 1].map(|_| vec![0.0; self.state.len()]);
-                in_parts([&mut radius, &mut inverse_mass], |first, [radius, inverse_mass]| {
-                    for (at, (radius, inverse_mass)) in radius.iter_mut().zip(inverse_mass).enumerate() {
-                        let disc = &self.start.all()[self.state.number(first + at)];
-                        *radius = disc.radius;
-                        *inverse_mass = if disc.kind == ParticleKind::Grain { 1.0 / disc.mass } else { 0.0 };
-                    }
-                });
-                radius.extend([0.5 * self.system.reach; SENTINELS]);
-                inverse_mass.extend([1.0; SENTINELS]);
-            }
-            let discs = DiscColumns {
-                position: corrected.position.each_ref().map(Vec::as_slice),
-                velocity: corrected.velocity.each_ref().map(Vec::as_slice),
-                omega: &corrected.omega,
-                per_time: 1.0,
-                radius: &radius,
-                inverse_mass: &inverse_mass,
-            };
             let observing = ObservationArguments {
                 search: &self.search,
-                discs: &discs,
+                discs: &corrected.records,
                 moved: corrected.moved,
                 set: self.set,
                 precisions: PhantomData,

@@ -12,7 +12,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         let is_finite = |disc: usize| {
             let state =
                 (0..2).flat_map(|axis| self.state.row(axis, disc)).all(|value| value.to_f64().is_finite());
-            state && self.sums.iter().all(|sum| sum[disc].to_f64().is_finite())
+            state && self.sums.of(disc).iter().all(|sum| sum.to_f64().is_finite())
         };
         let is_unfit = |&disc: &usize| !is_finite(disc) || self.is_outside(disc);
         let mut unfit: Vec<usize> =

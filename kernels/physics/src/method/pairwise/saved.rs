@@ -78,9 +78,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
 
     /// Origins of the columns of the discs, in order.
     pub(super) fn sources(&self) -> Vec<ColumnSource> {
-        let state = self.state.columns.iter().enumerate();
-        let state =
-            state.flat_map(|(freedom, rows)| (0..rows.len()).map(move |k| ColumnSource::State(freedom, k)));
+        let state = self.state.carried().map(|(freedom, k)| ColumnSource::State(freedom, k));
         let lists = if self.search.lists().is_some() { &[0, 1][..] } else { &[] };
         let others = [0, 1, 2].map(ColumnSource::Sum).into_iter().chain([0, 1].map(ColumnSource::Cell));
         state.chain(others).chain(lists.iter().map(|&axis| ColumnSource::MadeAt(axis))).collect()
@@ -90,10 +88,9 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     pub(super) fn column_of(&self, source: ColumnSource, discs: &[u32]) -> CheckpointColumn {
         match source {
             ColumnSource::State(freedom, k) => {
-                let column = &self.state.columns[freedom][k];
-                self.column(discs, |disc| column[disc])
+                self.column(discs, |disc| self.state.derivative((freedom, k), disc))
             }
-            ColumnSource::Sum(freedom) => self.column(discs, |disc| self.sums[freedom][disc]),
+            ColumnSource::Sum(freedom) => self.column(discs, |disc| self.sums.of(disc)[freedom]),
             ColumnSource::Cell(axis) => {
                 let cell = |disc| self.search.cells().cell(disc);
                 self.column(discs, |disc| cell(disc).map_or(f64::NAN, |cell| cell[axis] as f64))
@@ -141,15 +138,14 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         length: usize,
     ) -> Result<(), String> {
         let in_order = OrderedEntries { columns, entries, length };
-        for (names, rows) in STATE.iter().zip(&mut self.state.columns) {
-            for (name, column) in names.iter().zip(rows) {
-                let values = in_order.of::<S>(name.label())?;
-                // The sentinels are kept.
-                column[..values.len()].copy_from_slice(&values);
-            }
+        for of in self.state.carried().collect::<Vec<_>>() {
+            let values = in_order.of::<S>(STATE[of.0][of.1].label())?;
+            let discs = values.into_iter().enumerate();
+            discs.for_each(|(disc, value)| self.state.set_derivative(of, disc, value));
         }
-        for (name, sum) in SUMS.iter().zip(&mut self.sums) {
-            sum.copy_from_slice(&in_order.of::<P>(name)?);
+        for (sum, name) in SUMS.iter().enumerate() {
+            let values = in_order.of::<P>(name)?;
+            values.into_iter().enumerate().for_each(|(disc, value)| self.sums.set(sum, disc, value));
         }
         let cells = [in_order.of::<f64>(CELL[0])?, in_order.of::<f64>(CELL[1])?];
         let counts = self.search.cells().grid().counts;
@@ -176,7 +172,8 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         drop((cells, in_order));
         if let Some(made_at) = made_at {
             for (axis, places) in made_at.into_iter().enumerate() {
-                self.state.columns[axis][0][..places.len()].copy_from_slice(&places);
+                let discs = places.into_iter().enumerate();
+                discs.for_each(|(disc, along)| self.state.set_derivative((axis, 0), disc, along));
             }
         }
         let order = self.sort_by_cell();

@@ -1,13 +1,12 @@
-//! State of the discs: columns in the order of their cells, positions relative to the cells' centres.
+//! State of the discs: records in the order of their cells, positions relative to the cells' centres.
 
 use super::{CarriedState, PairSystem};
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::cell::Cell;
-use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
 use stripmine_kernels::isa::AlignedColumn;
-use stripmine_kernels::sweep::fast::{self, SENTINELS};
+use stripmine_kernels::sweep::fast::{RecordEntry, StateRecords};
 use stripmine_kernels::{in_pieces, reorder_into, reordered};
 
 /// Change of cell of a disc, its position relative to the new centre (length), and the periods that it crosses.
@@ -38,21 +37,51 @@ impl Members {
     }
 }
 
-/// Columns with an entry for each disc, grains first, followed by two sentinels that touch nothing. They start at different cache lines in large
-/// pages: a pass over a million discs takes a fifth less time than over vectors, which all start at page borders.
+/// Sizes of the state and the sums of an engine.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StateSize {
+    /// Number of discs.
+    pub discs: f64,
+    /// Degrees of freedom of a disc.
+    pub freedoms: f64,
+    /// True if discs vary.
+    pub vary: bool,
+    /// Number of derivatives carried from step to step, including the value.
+    pub carried: f64,
+    /// Bytes of a number of the state, and of a number of the forces.
+    pub number: [f64; 2],
+}
+
+impl StateSize {
+    /// Rows in memory of one number per disc, and the bytes of each.
+    pub(crate) fn rows(&self) -> [f64; 2] {
+        let StateSize { discs, freedoms, vary, carried, number: [state, force] } = *self;
+        let block = 16.0 / state;
+        let entries = if vary { 8.0 } else { 2.0 * freedoms };
+        let columns = freedoms * (carried - 2.0) + f64::from(u8::from(vary));
+        // Records, columns and sums have scratch space for sorting: a block, a column, and as much as the sums.
+        let records = ((entries / block).ceil() + 1.0) * block;
+        let columns = columns + f64::from(u8::from(columns > 0.0));
+        [records + columns + 2.0 * 4.0 * force / state, state * discs]
+    }
+}
+
+/// Records and columns with an entry for each disc, grains first; behind the records are two sentinels that touch nothing. They start at different
+/// cache lines in large pages: a pass over a million discs takes a fifth less time than over vectors, which all start at page borders.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingDiscs<S> {
-    /// Carried derivatives of each degree of freedom, scaled by the scheme.
-    pub(super) columns: Vec<Vec<AlignedColumn<S>>>,
-    /// Scale factor of velocities in the columns.
+    /// Values and rates of change, the latter scaled by the scheme, radii and inverse masses.
+    pub(super) records: StateRecords<S>,
+    /// Carried derivatives of each degree of freedom from the second on, scaled by the scheme.
+    pub(super) higher: Vec<Vec<AlignedColumn<S>>>,
+    /// Scale factor of velocities in the records.
     velocity_scale: f64,
     /// Radius of every disc (length), if all are equal.
     alike: Option<f64>,
-    /// Radii if discs vary; `inverse` then holds inverse masses and moments of inertia.
-    radius: AlignedColumn<S>,
+    /// Inverse moments of inertia, if discs vary.
+    inverse_inertia: AlignedColumn<S>,
     /// Scratch column, swapped with a column when discs are sorted.
     spare: AlignedColumn<S>,
-    inverse: [AlignedColumn<S>; 2],
     /// Number of each disc in the scene.
     numbers: Vec<u32>,
     /// Ids of the discs, which select their random numbers.
@@ -61,11 +90,12 @@ pub(crate) struct MovingDiscs<S> {
     grains: usize,
 }
 
-/// Arguments of a pass: columns, inverse masses and moments of inertia, and ids.
-type PassColumns<'a, S> = (&'a mut [Vec<AlignedColumn<S>>], [&'a [S]; 2], &'a [u32]);
+/// Arguments of a pass: records, higher derivatives, inverse moments of inertia, and ids.
+pub(super) type PassColumns<'a, S> =
+    (&'a mut StateRecords<S>, &'a mut [Vec<AlignedColumn<S>>], &'a [S], &'a [u32]);
 
-/// Derivatives of each degree of freedom that a sweep reads.
-const SWEPT: [Range<usize>; 3] = [0..2, 0..2, 1..2];
+/// First alignment number of the columns; the blocks of the records have smaller ones.
+const FIRST_COLUMN: usize = 4;
 
 impl<S: Precision> MovingDiscs<S> {
     /// State of the members of `particles`, in the form that the scheme carries from step to step.
@@ -77,50 +107,52 @@ impl<S: Precision> MovingDiscs<S> {
     ) -> Self {
         let velocity_scale = carried.scales[1];
         let Members { numbers: discs, moving, grains } = members;
+        let (all, count) = (particles.all(), discs.len());
+        let vary = system.inertia == Inertia::Varying;
         // The thread that fills a piece touches its memory first.
+        let mut records = StateRecords::zeros(0, count, [system.freedoms == 3, vary], 1.0 / velocity_scale);
+        let mut fill = |entry: RecordEntry, value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| {
+            let of = |disc: usize| discs.get(disc).map_or(sentinel, |&number| value(&all[number as usize]));
+            records.fill(entry, |disc| S::from_f64(of(disc)));
+        };
+        for axis in 0..2 {
+            fill(RecordEntry::of(axis, 1), &|disc| disc.velocity[axis] * velocity_scale, 0.0);
+        }
+        if system.freedoms == 3 {
+            fill(RecordEntry::Angle, &|disc| disc.angle, 0.0);
+            fill(RecordEntry::Omega, &|disc| disc.omega * velocity_scale, 0.0);
+        }
         let numbers = Cell::new(0);
-        let zeros = || AlignedColumn::zeros(numbers.replace(numbers.get() + 1), discs.len() + SENTINELS);
-        let column = |value: &(dyn Fn(&Particle) -> f64 + Sync), sentinel: f64| -> AlignedColumn<S> {
-            let mut values = zeros();
-            let (of_discs, of_sentinels) = values.split_at_mut(discs.len());
-            of_sentinels.fill(S::from_f64(sentinel));
-            in_pieces(of_discs, |first, piece| {
-                let all = particles.all();
-                let values = discs[first..].iter().map(|&number| value(&all[number as usize]));
-                piece.iter_mut().zip(values).for_each(|(to, value)| *to = S::from_f64(value));
-            });
-            values
-        };
-        let derivative = |freedom: usize, k: usize| match (k, freedom) {
-            (1, 0 | 1) => column(&|disc| disc.velocity[freedom] * velocity_scale, 0.0),
-            (0, 2) => column(&|disc| disc.angle, 0.0),
-            (1, _) => column(&|disc| disc.omega * velocity_scale, 0.0),
-            _ => zeros(),
-        };
-        let mut columns: Vec<Vec<AlignedColumn<S>>> = (0..system.freedoms)
-            .map(|freedom| (0..carried.derivatives).map(|k| derivative(freedom, k)).collect())
-            .collect();
-        // The sentinels are farther apart than any pair acts.
-        columns[0][0][discs.len()] = S::from_f64(4.0 * system.reach);
-        let (mut radius, mut inverse) =
-            (AlignedColumn::default(), [(); 2].map(|()| AlignedColumn::default()));
-        if system.inertia == Inertia::Varying {
+        let zeros = || AlignedColumn::zeros(numbers.replace(numbers.get() + 1) + FIRST_COLUMN, count);
+        let mut inverse_inertia = AlignedColumn::default();
+        if vary {
             let of_grain =
                 |disc: &Particle, value: f64| if disc.kind == ParticleKind::Wall { 0.0 } else { value };
             let largest = particles.radii().map_or(1.0, |[_, largest]| largest);
-            radius = column(&|disc| disc.radius, largest);
-            inverse[0] = column(&|disc| of_grain(disc, 1.0 / disc.mass), 1.0);
+            fill(RecordEntry::Radius, &|disc| disc.radius, largest);
+            fill(RecordEntry::InverseMass, &|disc| of_grain(disc, 1.0 / disc.mass), 1.0);
             let inertia = |disc: &Particle| system.inertia_factor * disc.mass * disc.radius * disc.radius;
-            inverse[1] = column(&|disc| of_grain(disc, 1.0 / inertia(disc)), 1.0);
+            inverse_inertia = zeros();
+            in_pieces(&mut inverse_inertia, |first, piece| {
+                let values = discs[first..].iter().map(|&number| &all[number as usize]);
+                piece.iter_mut().zip(values).for_each(|(to, disc)| {
+                    *to = S::from_f64(of_grain(disc, 1.0 / inertia(disc)));
+                });
+            });
         }
+        // The sentinels are farther apart than any pair acts.
+        records.set(RecordEntry::X, count, S::from_f64(4.0 * system.reach));
+        let higher: Vec<Vec<AlignedColumn<S>>> =
+            (0..system.freedoms).map(|_| (2..carried.derivatives).map(|_| zeros()).collect()).collect();
+        let has_columns = vary || carried.derivatives > 2;
         MovingDiscs {
-            columns,
+            records,
             velocity_scale,
             alike: system.radius,
-            radius,
-            spare: zeros(),
-            inverse,
-            ids: discs.iter().map(|&number| particles.all()[number as usize].id).collect(),
+            spare: if has_columns { zeros() } else { AlignedColumn::default() },
+            inverse_inertia,
+            higher,
+            ids: discs.iter().map(|&number| all[number as usize].id).collect(),
             numbers: discs,
             moving,
             grains,
@@ -147,10 +179,33 @@ impl<S: Precision> MovingDiscs<S> {
         self.numbers[disc] as usize
     }
 
+    /// Degrees of freedom and derivatives that are carried from step to step, in order.
+    pub(super) fn carried(&self) -> impl Iterator<Item = (usize, usize)> + use<S> {
+        let counts: Vec<usize> = self.higher.iter().map(|columns| 2 + columns.len()).collect();
+        counts.into_iter().enumerate().flat_map(|(freedom, count)| (0..count).map(move |k| (freedom, k)))
+    }
+
+    /// A carried derivative of a degree of freedom of a disc.
+    pub(super) fn derivative(&self, (freedom, k): (usize, usize), disc: usize) -> S {
+        match k {
+            0 | 1 => self.records.get(RecordEntry::of(freedom, k), disc),
+            _ => self.higher[freedom][k - 2][disc],
+        }
+    }
+
+    /// Sets a carried derivative of a degree of freedom of a disc.
+    pub(super) fn set_derivative(&mut self, (freedom, k): (usize, usize), disc: usize, value: S) {
+        match k {
+            0 | 1 => self.records.set(RecordEntry::of(freedom, k), disc, value),
+            _ => self.higher[freedom][k - 2][disc] = value,
+        }
+    }
+
     /// Carried derivatives of a disc; the others are zero.
     pub(crate) fn row(&self, freedom: usize, disc: usize) -> [S; DERIVATIVES] {
         let mut row = [S::default(); DERIVATIVES];
-        row.iter_mut().zip(&self.columns[freedom]).for_each(|(q, column)| *q = column[disc]);
+        let carried = 2 + self.higher[freedom].len();
+        row.iter_mut().enumerate().take(carried).for_each(|(k, q)| *q = self.derivative((freedom, k), disc));
         row
     }
 
@@ -166,46 +221,34 @@ impl<S: Precision> MovingDiscs<S> {
 
     /// Position of a disc relative to the centre of its cell (length).
     pub(crate) fn place(&self, disc: usize) -> [f64; 2] {
-        [self.columns[0][0][disc].to_f64(), self.columns[1][0][disc].to_f64()]
-    }
-
-    /// Positions of all discs and sentinels.
-    pub(crate) fn places(&self) -> [&[S]; 2] {
-        [&self.columns[0][0], &self.columns[1][0]]
-    }
-
-    /// Columns that a sweep reads and that change: positions, velocities, and spins if discs rotate.
-    pub(crate) fn swept(&self) -> impl Iterator<Item = &[S]> {
-        self.columns.iter().zip(SWEPT).flat_map(|(columns, swept)| &columns[swept]).map(|column| &**column)
-    }
-
-    /// Mutable access to these columns.
-    pub(crate) fn swept_mut(&mut self) -> impl Iterator<Item = &mut [S]> {
-        let columns = self.columns.iter_mut().zip(SWEPT);
-        columns.flat_map(|(columns, swept)| &mut columns[swept]).map(|column| &mut **column)
+        self.records.position(disc)
     }
 
     /// Sets the position of a disc.
     pub(crate) fn put(&mut self, disc: usize, place: [f64; 2]) {
-        (0..2).for_each(|axis| self.columns[axis][0][disc] = S::from_f64(place[axis]));
+        (0..2).for_each(|axis| self.set_derivative((axis, 0), disc, S::from_f64(place[axis])));
     }
 
     /// Sets the velocity of all wall discs (length/time).
     pub(crate) fn set_wall_velocity(&mut self, velocity: [f64; 2]) {
-        let (discs, scale) = (self.numbers.len(), self.velocity_scale);
-        (0..2).for_each(|axis| {
-            self.columns[axis][1][self.grains..discs].fill(S::from_f64(velocity[axis] * scale))
-        });
+        for disc in self.grains..self.len() {
+            for (axis, along) in velocity.into_iter().enumerate() {
+                self.set_derivative((axis, 1), disc, S::from_f64(along * self.velocity_scale));
+            }
+        }
     }
 
     /// Radius of a disc (length).
     pub(crate) fn radius(&self, disc: usize) -> f64 {
-        self.alike.unwrap_or_else(|| self.radius[disc].to_f64())
+        self.alike.unwrap_or_else(|| self.records.get(RecordEntry::Radius, disc).to_f64())
     }
 
-    /// Inverse masses or moments of inertia for a degree of freedom.
-    pub(crate) fn inverse(&self, freedom: usize) -> &[S] {
-        &self.inverse[freedom / 2]
+    /// Inverse mass or moment of inertia of a disc for a degree of freedom, if discs vary.
+    pub(crate) fn inverse(&self, freedom: usize, disc: usize) -> S {
+        match freedom {
+            0 | 1 => self.records.get(RecordEntry::InverseMass, disc),
+            _ => self.inverse_inertia[disc],
+        }
     }
 
     pub(crate) fn id(&self, disc: usize) -> u32 {
@@ -218,31 +261,16 @@ impl<S: Precision> MovingDiscs<S> {
     }
 
     /// Returns the arguments of a pass.
-    pub(crate) fn for_advance(&mut self) -> PassColumns<'_, S> {
-        (&mut self.columns, [&self.inverse[0], &self.inverse[1]], &self.ids)
-    }
-
-    /// Discs as a sweep reads them.
-    pub(crate) fn discs(&self, system: &PairSystem) -> fast::DiscColumns<'_, S> {
-        let omega = if system.freedoms == 3 { &*self.columns[2][1] } else { &[] };
-        fast::DiscColumns {
-            position: self.places(),
-            velocity: [&self.columns[0][1], &self.columns[1][1]],
-            omega,
-            per_time: 1.0 / self.velocity_scale,
-            radius: &self.radius,
-            inverse_mass: &self.inverse[0],
-        }
+    pub(super) fn for_advance(&mut self) -> PassColumns<'_, S> {
+        (&mut self.records, &mut self.higher, &self.inverse_inertia, &self.ids)
     }
 
     /// Renumbers: disc `n` becomes what disc `order[n]` was.
     pub(crate) fn renumber(&mut self, order: &[u32]) {
-        let discs = order.len() as u32;
-        let with_sentinels: Vec<u32> = order.iter().copied().chain(discs..discs + SENTINELS as u32).collect();
-        let derivatives = self.columns.iter_mut().flatten();
-        for column in derivatives.chain([&mut self.radius]).chain(&mut self.inverse) {
+        self.records.renumber(order);
+        for column in self.higher.iter_mut().flatten().chain([&mut self.inverse_inertia]) {
             if !column.is_empty() {
-                reorder_into(&mut self.spare, column, &with_sentinels);
+                reorder_into(&mut self.spare, column, order);
                 std::mem::swap(column, &mut self.spare);
             }
         }

@@ -3,6 +3,7 @@
 use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Precision;
+use crate::sweep::fast::pairs::{CellOffset, cell_offset};
 use crate::sweep::lattice::LatticeFrame;
 
 /// A pair of cells whose discs may touch: the first cell of the group in the high bits, offset and lane in the low ones.
@@ -60,8 +61,8 @@ pub struct Codes<P> {
     stride: usize,
     /// Distances from the group's first cell to the own cell and to the partner's.
     cells: Vec<[i32; 2]>,
-    /// Vectors from the centre of the own cell to that of the partner's (length).
-    cell_offsets: [Vec<P>; 2],
+    /// Vectors from the centre of the own cell to that of the partner's (length), by offset.
+    cell_offsets: Vec<CellOffset<P>>,
 }
 
 impl<P: Precision> Codes<P> {
@@ -75,9 +76,9 @@ impl<P: Precision> Codes<P> {
             cells: all()
                 .map(|(lane, [column, row])| [lane as i32, (lane as isize + row * stride + column) as i32])
                 .collect(),
-            cell_offsets: [0, 1].map(|axis| {
-                all().map(|(_, offset)| P::from_f64(offset[axis] as f64 * frame.edge[axis])).collect()
-            }),
+            cell_offsets: half_mask_offsets(occupancy.half_width())
+                .map(|offset| cell_offset([0, 1].map(|axis| offset[axis] as f64 * frame.edge[axis])))
+                .collect(),
         }
     }
 
@@ -88,16 +89,22 @@ impl<P: Precision> Codes<P> {
         self.stride == occupancy.shape().stride() && self.cells.len() == codes
     }
 
-    /// The two discs of a candidate, and the vector between their cells.
+    /// Vectors between cells, by the number of the offset.
     #[inline(always)]
-    pub(super) fn pair(&self, candidate: PackedCandidate, index: &[u32]) -> ([u32; 2], [P; 2]) {
+    pub(super) fn cell_offsets(&self) -> &[CellOffset<P>] {
+        &self.cell_offsets
+    }
+
+    /// The two discs of a candidate, and the number of the offset.
+    #[inline(always)]
+    pub(super) fn pair(&self, candidate: PackedCandidate, index: &[u32]) -> ([u32; 2], u32) {
         let (base, code) = (candidate.base(), candidate.code());
-        // SAFETY: a code is offset·GROUP + lane, and the tables have an entry for each. The group and the cells at its offsets
-        // are in the padded lattice or in the register of padding behind it, which the Index has too.
-        unsafe {
+        // SAFETY: a code is offset·GROUP + lane, and the table has an entry for each. The group and the cells at its offsets are in
+        // the padded lattice or in the register of padding behind it, which the Index has too.
+        let discs = unsafe {
             let cells = *self.cells.get_unchecked(code);
-            let discs = cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)));
-            (discs, [*self.cell_offsets[0].get_unchecked(code), *self.cell_offsets[1].get_unchecked(code)])
-        }
+            cells.map(|cell| *index.get_unchecked(base.wrapping_add_signed(cell as isize)))
+        };
+        (discs, (code / GROUP) as u32)
     }
 }

@@ -12,7 +12,7 @@
 //! Two searches find the same pairs. Where many cells are occupied, registers of neighbouring cells are compared with the same
 //! cells at a shift, empty or not (`detection.rs`). Where few are ([`SPARSE`]), one bit per cell marks occupied cells, and each
 //! disc reads the bits around it (`sparse.rs`). Both give candidates of one word each: the first cell of a group of 16, the
-//! offset and the lane (`codes.rs`). Two table loads turn it into the two cells, and two loads from the Index into the discs.
+//! offset and the lane (`codes.rs`). A table load turns it into the two cells, and two loads from the Index into the discs.
 
 mod bits;
 mod codes;
@@ -25,7 +25,8 @@ pub use occupancy::{CellTaken, Occupancy, SPARSE};
 
 use super::finder::{AT_ONCE, Finder, RowLayout, SearchCursor};
 use super::grid::CellGrid;
-use super::pairs::{PairBuffer, PairSequence, SENTINELS};
+use super::pairs::{CellOffset, PairBuffer, PairSequence};
+use super::records::StateRecords;
 use crate::InstructionSet;
 use crate::backend::Precision;
 use crate::backend::dispatch_native;
@@ -77,7 +78,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
 
     fn find(
         &self,
-        positions: [&[S]; 2],
+        discs: &StateRecords<S>,
         rows: Range<usize>,
         cursor: &mut SearchCursor,
         found: &mut Candidates,
@@ -86,28 +87,14 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
         let Lattice { occupancy, codes, slack } = *self;
         let Candidates { candidates: found, cells, shape } = found;
         assert!(codes.is_for(occupancy), "the codes are those of another lattice");
-        let entries = occupancy.discs() + SENTINELS;
-        assert!(
-            positions.iter().all(|position| position.len() == entries),
-            "a column of positions does not have {entries} entries"
-        );
+        assert_eq!(discs.discs(), occupancy.discs(), "the lattice and the records must have the same discs");
         *shape = Some(*occupancy.shape());
         found.clear();
         if occupancy.is_sparse() {
             let reach = occupancy.reach();
             dispatch_native(
                 set,
-                SparseSearch {
-                    occupancy,
-                    codes,
-                    positions,
-                    reach,
-                    rows,
-                    cursor,
-                    full: AT_ONCE,
-                    found,
-                    cells,
-                },
+                SparseSearch { occupancy, codes, discs, reach, rows, cursor, full: AT_ONCE, found, cells },
             )
         } else {
             let beyond = (1.0 + slack) * (1.0 + slack);
@@ -165,7 +152,11 @@ impl<P: Precision> PairSequence<P> for PackedPairs<'_, P> {
         self.candidates.len()
     }
     #[inline(always)]
-    fn pair(&self, number: usize) -> ([u32; 2], [P; 2]) {
+    fn pair(&self, number: usize) -> ([u32; 2], u32) {
         self.codes.pair(self.candidates[number], self.index)
+    }
+    #[inline(always)]
+    fn cell_offsets(&self) -> &[CellOffset<P>] {
+        self.codes.cell_offsets()
     }
 }

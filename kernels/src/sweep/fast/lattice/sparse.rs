@@ -21,13 +21,14 @@ use crate::backend::RegisterTask;
 use crate::backend::{Precision, Registers};
 use crate::isa::Element;
 use crate::sweep::fast::finder::{MARGIN, SearchCursor};
+use crate::sweep::fast::records::StateRecords;
 use std::ops::Range;
 
 /// Searches whole rows from `cursor` on, until `full` candidates are found.
 pub(super) struct SparseSearch<'a, S, P> {
     pub(super) occupancy: &'a Occupancy,
     pub(super) codes: &'a Codes<P>,
-    pub(super) positions: [&'a [S]; 2],
+    pub(super) discs: &'a StateRecords<S>,
     pub(super) reach: f64,
     pub(super) rows: Range<usize>,
     pub(super) cursor: &'a mut SearchCursor,
@@ -41,8 +42,7 @@ pub(super) struct SparseSearch<'a, S, P> {
 impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
     #[inline(always)]
     fn on<R: Registers<Lane = f32>>(self, _: R) {
-        let SparseSearch { occupancy, codes, positions: [x, y], reach, rows, cursor, full, found, cells } =
-            self;
+        let SparseSearch { occupancy, codes, discs, reach, rows, cursor, full, found, cells } = self;
         let (shape, occupied, index) = (occupancy.shape(), occupancy.occupied(), occupancy.index());
         let h = occupancy.half_width();
         let (ahead, around) = ((1 << h) - 1, (1 << (2 * h + 1)) - 1);
@@ -79,13 +79,12 @@ impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
                 for listed in before..found.len() {
                     let candidate = found[listed];
                     let ([own, partner], cell_offset) = codes.pair(candidate, index);
-                    // SAFETY: the Index numbers discs and sentinels, which the columns have (asserted where the search begins).
-                    let along = |column: &[S], cell_offset: P| unsafe {
-                        let (own, partner) =
-                            (column.get_unchecked(own as usize), column.get_unchecked(partner as usize));
-                        (own.to_f64() - partner.to_f64()) - cell_offset.to_f64()
-                    };
-                    let (dx, dy) = (along(x, cell_offset[0]), along(y, cell_offset[1]));
+                    let [x, y, ..] = codes.cell_offsets()[cell_offset as usize];
+                    // SAFETY: the Index numbers discs and sentinels, which have records.
+                    let (own, partner) =
+                        unsafe { (discs.position_unchecked(own), discs.position_unchecked(partner)) };
+                    let dx = (own[0] - partner[0]) - x.to_f64();
+                    let dy = (own[1] - partner[1]) - y.to_f64();
                     found[kept] = candidate;
                     kept += usize::from(dx * dx + dy * dy < limit);
                 }

@@ -14,7 +14,6 @@ use super::wire::{
 };
 use crate::method::PhysicsFailure;
 use crate::method::pairwise::cells::CellChange;
-use crate::method::pairwise::observing::CorrectedDiscs;
 use crate::method::pairwise::search::{PairSearch, SearchCells};
 use crate::method::pairwise::{NameableDiscs, PairEngine, Phase, PrescribedMotion, SteppingDiscs};
 use crate::ranks::{Parcel, RankError, Ranks, numbers};
@@ -25,7 +24,9 @@ use std::time::Instant;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{Element, ProgramError};
 use stripmine_kernels::law::ObservationRequest;
-use stripmine_kernels::sweep::fast::{BandReport, PassReport, RankShare, RowLayout};
+use stripmine_kernels::sweep::fast::{
+    BandReport, PassReport, RankShare, RecordEntry, RowLayout, StateRecords,
+};
 
 /// Part of a rank, or its failure with the rank that must report it.
 pub(super) type PartStart = Result<Box<dyn RankPart>, (Box<dyn Ranks>, PhysicsFailure)>;
@@ -245,7 +246,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             [Err(error), _] | [_, Err(error)] => return Ok(Err(error)),
         };
         let begun = Instant::now();
-        let parcels = self.to_in_memory.each_ref().map(|discs| of_discs(engine.state.swept(), discs));
+        let parcels = self.to_in_memory.each_ref().map(|discs| of_discs(&engine.state.records, discs));
         parcels.iter().for_each(|parcel| engine.elapsed.timings.sent(parcel.0.len() as u64));
         let (mut between, mut hidden) = (Ok(PassReport::default()), 0.0);
         let heard = ranks.halo(parcels, &mut || {
@@ -254,7 +255,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
             hidden = begun.elapsed().as_secs_f64();
         })?;
         for ((from, parcel), discs) in ranks.neighbours().into_iter().zip(&heard).zip(&self.from_in_memory) {
-            put_discs((from, parcel), engine.state.swept_mut().collect(), discs)?;
+            put_discs((from, parcel), &mut engine.state.records, discs)?;
             for &disc in discs {
                 let disc = disc as usize;
                 let place = engine.state.place(disc);
@@ -318,14 +319,11 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
     pub(super) fn contacts(&self) -> Result<Vec<BandReport>, RankError> {
         debug_assert_eq!(self.ordered, self.engine.orders, "indices of discs in memory are out of date");
         let mut corrected = self.engine.corrected_discs();
-        let parcels = self
-            .to_in_memory
-            .each_ref()
-            .map(|discs| of_discs(of_corrected(&mut corrected).into_iter().map(|column| &*column), discs));
+        let parcels = self.to_in_memory.each_ref().map(|discs| of_discs(&corrected.records, discs));
         let heard = self.ranks.halo(parcels, &mut || {})?;
         let neighbours = self.ranks.neighbours();
         for ((from, parcel), discs) in neighbours.into_iter().zip(&heard).zip(&self.from_in_memory) {
-            put_discs((from, parcel), of_corrected(&mut corrected), discs)?;
+            put_discs((from, parcel), &mut corrected.records, discs)?;
         }
         Ok(self.engine.contacts_met(&corrected).of_bands)
     }
@@ -355,21 +353,30 @@ enum ListState {
     Failed,
 }
 
-/// Packs entries of some discs in some columns.
-fn of_discs<'c, T: Element>(columns: impl Iterator<Item = &'c [T]>, discs: &[u32]) -> Parcel {
-    Parcel::of_numbers(columns.flat_map(|column| discs.iter().map(|&disc| column[disc as usize].to_f64())))
+/// Entries of records that a sweep reads and that change.
+fn swept_entries<T: Element>(records: &StateRecords<T>) -> &'static [RecordEntry] {
+    use RecordEntry::{Omega, Vx, Vy, X, Y};
+    if records.has(Omega) { &[X, Y, Vx, Vy, Omega] } else { &[X, Y, Vx, Vy] }
 }
 
-/// Stores the entries received from a rank in columns.
+/// Packs the swept entries of some discs.
+fn of_discs<T: Element>(records: &StateRecords<T>, discs: &[u32]) -> Parcel {
+    let entries = swept_entries(records).iter();
+    let numbers = entries.flat_map(|&entry| discs.iter().map(move |&disc| records.get(entry, disc as usize)));
+    Parcel::of_numbers(numbers.map(|number| number.to_f64()))
+}
+
+/// Stores the entries received from a rank in records.
 fn put_discs<T: Element>(
     (from, parcel): (usize, &Parcel),
-    columns: Vec<&mut [T]>,
+    records: &mut StateRecords<T>,
     discs: &[u32],
 ) -> Result<(), RankError> {
-    let mut numbers = numbers(&parcel.0, from, columns.len() * discs.len())?;
-    for column in columns {
-        let entries = discs.iter().zip(numbers.by_ref());
-        entries.for_each(|(&disc, number)| column[disc as usize] = T::from_f64(number));
+    let entries = swept_entries(records);
+    let mut numbers = numbers(&parcel.0, from, entries.len() * discs.len())?;
+    for &entry in entries {
+        let received = discs.iter().zip(numbers.by_ref());
+        received.for_each(|(&disc, number)| records.set(entry, disc as usize, T::from_f64(number)));
     }
     Ok(())
 }
@@ -381,13 +388,6 @@ fn longest_inner_range(told: &[Vec<u32>; 2], moving: usize) -> Range<usize> {
     let before = [0].into_iter().chain(told.iter().map(|disc| disc + 1));
     let behind = told.iter().copied().chain([moving]);
     before.zip(behind).map(|(start, end)| start..end.max(start)).max_by_key(Range::len).unwrap_or(0..0)
-}
-
-/// Columns of corrected discs that a sweep reads.
-fn of_corrected(corrected: &mut CorrectedDiscs) -> Vec<&mut [f64]> {
-    let CorrectedDiscs { position, velocity, omega, .. } = corrected;
-    let columns = position.iter_mut().chain(velocity).chain([omega]).filter(|column| !column.is_empty());
-    columns.map(Vec::as_mut_slice).collect()
 }
 
 /// Share of all rows, for a search without discs.

@@ -9,7 +9,8 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::sweep::fast::lattice::{Candidates, CellTaken, Codes, Lattice, Occupancy};
 use stripmine_kernels::sweep::fast::{
-    CellGrid, DiscColumns, DisplacementLimit, PositionCopies, RankShare, RowLayout, Sweep, SweepReport,
+    CellGrid, DisplacementLimit, ForceRecords, PositionCopies, RankShare, RowLayout, StateRecords, Sweep,
+    SweepReport,
 };
 use stripmine_kernels::sweep::lattice::{LatticeFrame, LatticeShape};
 
@@ -163,8 +164,8 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for LatticeSearch<P> {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &DiscColumns<'_, S>,
-        sums: [&mut [P]; 3],
+        discs: &StateRecords<S>,
+        sums: &mut ForceRecords<P>,
         asked: ObservationRequest,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {
@@ -175,7 +176,7 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for LatticeSearch<P> {
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &DiscColumns<'_, f64>,
+        discs: &StateRecords<f64>,
         moved: f64,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {

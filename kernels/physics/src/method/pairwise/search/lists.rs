@@ -8,8 +8,8 @@ use stripmine_kernels::in_pieces;
 use stripmine_kernels::isa::{AlignedColumn, ProgramError};
 use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::sweep::fast::{
-    CellGrid, DiscColumns, DisplacementLimit, PairBuffer, PositionCopies, RankShare, RowLayout, Sectors,
-    Sweep, SweepReport, VerletList,
+    CellGrid, DisplacementLimit, ForceRecords, PairBuffer, PositionCopies, RankShare, RecordEntry, RowLayout,
+    Sectors, StateRecords, Sweep, SweepReport, VerletList,
 };
 
 /// Verlet lists, and the sectors of the discs when they were built.
@@ -74,8 +74,8 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for ListSearch<S, P> {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &DiscColumns<'_, S>,
-        sums: [&mut [P]; 3],
+        discs: &StateRecords<S>,
+        sums: &mut ForceRecords<P>,
         asked: ObservationRequest,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {
@@ -88,7 +88,7 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for ListSearch<S, P> {
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &DiscColumns<'_, f64>,
+        discs: &StateRecords<f64>,
         _: f64,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {
@@ -100,16 +100,19 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for ListSearch<S, P> {
 
     fn make_lists(&mut self, state: &MovingDiscs<S>) {
         let ListSearch { sectors, listed, .. } = self;
-        let places = state.places();
-        for (axis, (made_at, places)) in listed.made_at.iter_mut().zip(places).enumerate() {
-            if made_at.len() != places.len() {
-                *made_at = AlignedColumn::zeros(MADE_AT + axis, places.len());
+        let records = &state.records;
+        for (axis, made_at) in listed.made_at.iter_mut().enumerate() {
+            if made_at.len() != records.discs() {
+                *made_at = AlignedColumn::zeros(MADE_AT + axis, records.discs());
             }
-            in_pieces(made_at, |first, piece| piece.copy_from_slice(&places[first..first + piece.len()]));
+            in_pieces(made_at, |first, piece| {
+                let discs = (first..).zip(piece);
+                discs.for_each(|(disc, made_at)| *made_at = records.get(RecordEntry::of(axis, 0), disc));
+            });
         }
         // Free the old list first: it is as large as the new one.
         listed.list = None;
-        listed.list = Some(VerletList::new(sectors, places, listed.skin));
+        listed.list = Some(VerletList::new(sectors, records, listed.skin));
         listed.made += 1;
     }
 

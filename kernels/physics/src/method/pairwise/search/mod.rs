@@ -16,8 +16,8 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::sweep::fast::lattice::CellTaken;
 use stripmine_kernels::sweep::fast::{
-    CellGrid, DiscColumns, DisplacementLimit, Finder, PositionCopies, RankShare, RowLayout, Sweep,
-    SweepReport,
+    CellGrid, DisplacementLimit, Finder, ForceRecords, PositionCopies, RankShare, RowLayout, StateRecords,
+    Sweep, SweepReport,
 };
 
 /// Cells and the discs in them. Positions are relative to the centre of a disc's cell.
@@ -93,8 +93,8 @@ pub(crate) trait PairSearch<S: Precision, P: Precision>: Send + Sync {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &DiscColumns<'_, S>,
-        sums: [&mut [P]; 3],
+        discs: &StateRecords<S>,
+        sums: &mut ForceRecords<P>,
         asked: ObservationRequest,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError>;
@@ -107,7 +107,7 @@ pub(crate) trait PairSearch<S: Precision, P: Precision>: Send + Sync {
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &DiscColumns<'_, f64>,
+        discs: &StateRecords<f64>,
         moved: f64,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError>;
@@ -129,19 +129,12 @@ fn observed<F: Finder<f64, f64>, L: Law<2> + Sync>(
     law: &L,
     finder: &F,
     share: Option<&RankShare>,
-    discs: &DiscColumns<'_, f64>,
+    discs: &StateRecords<f64>,
     set: InstructionSet,
 ) -> Result<SweepReport, ProgramError> {
-    let mut sums = [0, 1, 2].map(|_| vec![0.0; discs.position[0].len()]);
+    let mut sums = ForceRecords::zeros(0, discs.discs());
     let asked = ObservationRequest { energy: true, ..ObservationRequest::default() };
-    Sweep::for_share(finder.rows(), share).run(
-        law,
-        finder,
-        discs,
-        sums.each_mut().map(Vec::as_mut_slice),
-        asked,
-        set,
-    )
+    Sweep::for_share(finder.rows(), share).run(law, finder, discs, &mut sums, asked, set)
 }
 
 /// Returns the rows that a sweep for a finder is built for.

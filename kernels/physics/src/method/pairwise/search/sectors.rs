@@ -8,8 +8,8 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::sweep::fast::lattice::CellTaken;
 use stripmine_kernels::sweep::fast::{
-    CellGrid, DiscColumns, DisplacementLimit, PairBuffer, PositionCopies, RankShare, RowLayout, Sectors,
-    Sweep, SweepReport,
+    CellGrid, DisplacementLimit, ForceRecords, PairBuffer, PositionCopies, RankShare, RowLayout, Sectors,
+    StateRecords, Sweep, SweepReport,
 };
 
 impl<S: Precision> SearchCells<S> for Sectors {
@@ -87,8 +87,8 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for SectorSearch<P> {
     fn sweep<L: Law<2> + Sync>(
         &mut self,
         law: &L,
-        discs: &DiscColumns<'_, S>,
-        sums: [&mut [P]; 3],
+        discs: &StateRecords<S>,
+        sums: &mut ForceRecords<P>,
         asked: ObservationRequest,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {
@@ -98,7 +98,7 @@ impl<S: Precision, P: Precision> PairSearch<S, P> for SectorSearch<P> {
     fn observe<L: Law<2> + Sync>(
         &self,
         law: &L,
-        discs: &DiscColumns<'_, f64>,
+        discs: &StateRecords<f64>,
         _: f64,
         set: InstructionSet,
     ) -> Result<SweepReport, ProgramError> {
