@@ -181,6 +181,17 @@ fn hard_discs_take_the_estimated_memory() {
     judged(&said);
 }
 
+/// A hard disc takes at most 200 bytes at the peak, from reading the scene to the last event: what the program itself takes cancels.
+#[test]
+fn a_hard_disc_takes_two_hundred_bytes() {
+    let taken = |discs: &str| {
+        let words = ["bench", "hard-disks", "--steps", "1000", "--repeats", "1", "--threads", "1", "--particles", discs];
+        peak(&words.map(str::to_owned)) as f64
+    };
+    let each = (taken("1000000") - taken("250000")) / 750_000.0;
+    assert!(each <= 200.0, "{each} bytes");
+}
+
 /// A start takes memory for its particles, not for the box: a thousand positions are drawn from a mesh of two milliard.
 #[test]
 fn empty_boxes_take_no_memory() {

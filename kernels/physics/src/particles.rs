@@ -64,6 +64,12 @@ impl Particles {
         Particles(discs)
     }
 
+    /// Particles without wall discs.
+    pub(crate) fn of_grains(grains: Vec<Particle>) -> Self {
+        debug_assert!(grains.iter().all(|disc| disc.kind == ParticleKind::Grain));
+        Particles(grains)
+    }
+
     /// All particles.
     pub fn all(&self) -> &[Particle] {
         &self.0
@@ -103,6 +109,11 @@ impl Particles {
     pub fn checksum(&self) -> String {
         let mut discs: Vec<_> = self.0.iter().collect();
         discs.sort_by_key(|disc| disc.id);
+        Particles::checksum_in_order(discs.into_iter().copied())
+    }
+
+    /// Checksum of particles that come in the order of their ids.
+    pub(crate) fn checksum_in_order(discs: impl Iterator<Item = Particle>) -> String {
         let mut hasher = crc32fast::Hasher::new();
         for disc in discs {
             // Depth counts only where it is not 0, so a planar state keeps the checksum of its plane.
@@ -213,6 +224,11 @@ pub trait PerParticle {
     /// True as long as all particles can be reached. False after a rank is lost: results requested since then must not be used.
     fn is_whole(&self) -> bool {
         true
+    }
+
+    /// Checksum of [`particles`](Self::particles).
+    fn checksum(&self) -> String {
+        self.particles().checksum()
     }
 
     /// Stores planar positions and velocities of the grains, with positions inside the box.

@@ -295,6 +295,15 @@ impl Prepared {
     pub fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         self.model.start(purpose)
     }
+
+    /// Starts the only simulation of the scene. Less memory is needed than with [`start`](Self::start): the simulation may release the
+    /// particles at the start.
+    ///
+    /// # Errors
+    /// [`PhysicsFailure`] as of [`start`](Self::start).
+    pub fn start_only(self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+        self.model.start_only(purpose)
+    }
 }
 
 /// Checked scene of a method with its particles: starts simulations.
@@ -338,6 +347,14 @@ pub trait Startable: Send + Sync {
     /// # Errors
     /// [`PhysicsFailure`] if the start violates a precondition, or the processor lacks the requested instruction set.
     fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure>;
+
+    /// Starts the only simulation of the scene, which may release the particles at the start.
+    ///
+    /// # Errors
+    /// [`PhysicsFailure`] as of [`start`](Self::start).
+    fn start_only(self: Box<Self>, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+        self.start(purpose)
+    }
 
     /// Returns this scene started from other positions and velocities of the same particles in the same order.
     fn started_from(&self, particles: Particles) -> Prepared;

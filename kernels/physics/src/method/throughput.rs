@@ -141,7 +141,8 @@ struct Repeat {
 /// Running scene that is timed repeatedly.
 pub struct ThroughputRun {
     bench: &'static Bench,
-    prepared: Prepared,
+    particles: usize,
+    settings: Map<String, Value>,
     simulation: Box<dyn Simulation>,
     /// Wall seconds until the first step.
     start: f64,
@@ -165,8 +166,9 @@ impl ThroughputRun {
         steps: u64,
     ) -> Result<Self, MeasurementError> {
         prepared.memory.clone().for_crew(ranks::current_backend()).fits(bench.name)?;
+        let (particles, settings) = (prepared.particles().grain_count(), prepared.settings.clone());
         let begun = Instant::now();
-        let simulation = prepared.start(StartPurpose::Measurement)?;
+        let simulation = prepared.start_only(StartPurpose::Measurement)?;
         let start = begun.elapsed().as_secs_f64();
         let places = |names: &'static [&'static str]| {
             names
@@ -176,8 +178,18 @@ impl ThroughputRun {
         };
         let [compared, at_end] = [places(bench.compared)?, places(bench.at_end)?];
         let (before, repeats) = (vec![], vec![]);
-        let mut running =
-            ThroughputRun { bench, prepared, simulation, start, steps, before, compared, at_end, repeats };
+        let mut running = ThroughputRun {
+            bench,
+            particles,
+            settings,
+            simulation,
+            start,
+            steps,
+            before,
+            compared,
+            at_end,
+            repeats,
+        };
         running.advance(equilibration)?;
         running.before = running.simulation.row();
         running.simulation.check_ranks()?;
@@ -234,20 +246,30 @@ impl ThroughputRun {
     pub fn measured(mut self) -> Result<Throughput, PhysicsFailure> {
         self.repeats.sort_by(|a, b| a.wall.total_cmp(&b.wall));
         let after = self.simulation.observe();
-        let ThroughputRun { bench, prepared, simulation, steps, before, compared, at_end, repeats, .. } =
-            self;
+        let ThroughputRun {
+            bench,
+            particles,
+            settings,
+            simulation,
+            steps,
+            before,
+            compared,
+            at_end,
+            repeats,
+            ..
+        } = self;
         let [best, median] = [0, repeats.len() / 2].map(|place| &repeats[place]);
         let measured = Throughput {
             what: bench.name,
-            particles: prepared.particles().grain_count(),
-            settings: prepared.settings,
+            particles,
+            settings,
             threads: rayon::current_num_threads(),
             repeats: repeats.len(),
             steps,
             seconds: best.wall,
             cpu_seconds: best.cpu,
             peak_memory_bytes: memory::peak(),
-            checksum: simulation.particles().checksum(),
+            checksum: simulation.per_particle().checksum(),
             rate_name: bench.rate,
             rate: best.work / best.wall,
             median_rate: median.work / median.wall,

@@ -1,13 +1,16 @@
 //! Checks a scene of hard discs against the preconditions of the method.
 
 use super::compress::compress;
+use super::event::Arena;
 use super::fast;
+use super::identities::DiscIdentities;
 use super::idle::is_idle_forever;
 use super::keys::{ENGINE, EVENTS, FLOOR_AMPLITUDE, MASK, MASKS};
 use super::options::EngineChoice;
 use super::overlap_repair::{ROUNDING, StartOverlaps};
 use super::reference::choice::{candidates, mask};
 use super::reference::grid::ExclusiveGridSize;
+use super::restored::available_energy;
 use super::scene::HardDiskScene;
 use crate::domain::{BoxSide, Domain};
 use crate::method::{Prepared, Until};
@@ -26,7 +29,7 @@ use stripmine_kernels::mask::Mask;
 pub(super) struct CheckedHardDisks {
     pub(super) scene: HardDiskScene,
     pub(super) domain: Domain,
-    /// Shared with the simulation to save memory.
+    /// Shared with copies of the scene to save memory; none once the only simulation has started.
     pub(super) particles: Arc<Particles>,
     /// Mask of the reference engine; none for the fast engine.
     pub(super) mask: Option<Mask>,
@@ -152,7 +155,8 @@ fn idle_run_error(
     domain: Domain,
     particles: &Particles,
 ) -> Option<SceneError> {
-    let is_idle = || is_idle_forever(&scene.arena(domain), &discs(&domain, particles).0);
+    let arena = scene.arena(domain);
+    let is_idle = || is_idle_forever(&arena, &StartingDiscs::of(&arena, particles).discs);
     (matches!(scene.run.until, Until::Events(_)) && is_idle()).then(|| {
         let message = "nothing will ever happen: no disc meets another disc or a side";
         let error = values.spot(&EVENTS).error(MistakeKind::Contradiction, message);
@@ -160,20 +164,33 @@ fn idle_run_error(
     })
 }
 
-/// Returns the discs in the order of their ids, and the index of the particle of each.
-fn discs(domain: &Domain, particles: &Particles) -> (Vec<FlyingDisc>, Vec<usize>) {
-    let all = particles.all();
-    let mut order: Vec<usize> = (0..all.len()).collect();
-    order.sort_by_key(|&place| all[place].id);
-    let disc = |&place: &usize| FlyingDisc {
-        position: domain.wrapped(all[place].planar_position()),
-        velocity: all[place].planar_velocity(),
-        time: 0.0,
-        radius: all[place].radius,
-        mass: all[place].mass,
-        events: 0,
-    };
-    (order.iter().map(disc).collect(), order)
+/// All that a simulation needs of the particles at the start, which may be released then.
+pub(super) struct StartingDiscs {
+    /// Discs in the order of their ids.
+    pub(super) discs: Vec<FlyingDisc>,
+    pub(super) identities: DiscIdentities,
+    /// Energy available to the discs, for the check of a checkpoint.
+    pub(super) energy: f64,
+}
+
+impl StartingDiscs {
+    /// Discs at the start.
+    fn of(arena: &Arena, particles: &Particles) -> StartingDiscs {
+        let identities = DiscIdentities::of(particles);
+        let disc = |number: u32| {
+            let own = &particles.all()[identities.place(number)];
+            FlyingDisc {
+                position: arena.domain.wrapped(own.planar_position()),
+                velocity: own.planar_velocity(),
+                time: 0.0,
+                radius: own.radius,
+                mass: own.mass,
+                events: 0,
+            }
+        };
+        let discs = (0..identities.count() as u32).map(disc).collect();
+        StartingDiscs { discs, identities, energy: available_energy(arena, particles) }
+    }
 }
 
 /// Selects the engine. Returns the mask of the reference engine, or none for the fast engine.
@@ -256,9 +273,9 @@ fn chosen_mask(
 }
 
 impl CheckedHardDisks {
-    /// Returns the discs in the order of their ids, and the index of the particle of each.
-    pub(super) fn discs(&self) -> (Vec<FlyingDisc>, Vec<usize>) {
-        discs(&self.domain, &self.particles)
+    /// Discs at the start.
+    pub(super) fn discs(&self) -> StartingDiscs {
+        StartingDiscs::of(&self.scene.arena(self.domain), &self.particles)
     }
 
     pub(super) fn packing_fraction(&self) -> f64 {

@@ -59,8 +59,8 @@ pub fn compress(
         let rate = GROWTH[usize::from(crowded)];
         let end = (1.0 - scale) / rate;
         let growing = arena.growing(RadiusGrowth { from: scale, rate });
-        let begun = Fast::new(growing, discs.clone(), InstructionSet::best(), 0.0);
-        let mut engine = begun.map_err(|_| CompressionFailure::TooSmall)?;
+        let mut engine = Fast::new(growing, discs.clone(), InstructionSet::best(), 0.0);
+        engine.begin().map_err(|_| CompressionFailure::TooSmall)?;
         let mut time = end;
         for _ in 0..BETWEEN * count / 2 {
             match engine.next(end, u64::MAX) {

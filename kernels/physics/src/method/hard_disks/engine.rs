@@ -20,6 +20,12 @@ pub(crate) type EventObserver<'o> = dyn FnMut(&ExecutedEvent, &dyn FlyingDiscs) 
 
 /// Event-driven engine, which owns the moving discs.
 pub(crate) trait EventEngine: FlyingDiscs + Send {
+    /// Finds the next event of each disc. Called once, before anything else.
+    ///
+    /// # Errors
+    /// [`EngineError`] if a disc has more neighbours than a list can hold, or discs cannot be assigned to cells.
+    fn begin(&mut self) -> Result<(), EngineError>;
+
     /// Executes events until the observer stops the engine, and returns true then. Returns false as soon as no event is left that comes no
     /// later than `until` (time) and before all discs have had their partners searched `most` times.
     ///

@@ -1,26 +1,25 @@
 //! Messages of failures of hard discs.
 
-use super::engine::EngineError;
+use super::engine::{EngineError, FlyingDiscs};
+use super::identities::DiscIdentities;
 use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
-use crate::particles::Particles;
 use stripmine_kernels::flight::FlyingDisc;
 use stripmine_kernels::isa::ProgramError;
 
 /// Description of a disc in a failure.
-pub(super) fn culprit(number: u32, disc: &FlyingDisc, particles: &Particles, places: &[usize]) -> Culprit {
-    let FlyingDisc { position, velocity, .. } = *disc;
-    Culprit::in_plane("disc", particles.all()[places[number as usize]].id, position, velocity)
+pub(super) fn culprit(number: u32, discs: &dyn FlyingDiscs, identities: &DiscIdentities) -> Culprit {
+    let FlyingDisc { position, velocity, .. } = *discs.disc(number);
+    Culprit::in_plane("disc", identities.id(number), position, velocity)
 }
 
 /// Converts an engine error to a failure that names the discs and the remedy.
 pub(super) fn failure(
     why: EngineError,
-    disc: &dyn Fn(u32) -> FlyingDisc,
-    particles: &Particles,
-    places: &[usize],
+    discs: &dyn FlyingDiscs,
+    identities: &DiscIdentities,
     clock: Clock,
 ) -> PhysicsFailure {
-    let named = |number: u32| culprit(number, &disc(number), particles, places);
+    let named = |number: u32| culprit(number, discs, identities);
     match why {
         EngineError::SharedCell(pair) => {
             let [a, b] = pair.map(named);

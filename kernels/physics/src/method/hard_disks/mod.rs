@@ -14,6 +14,7 @@ mod fast;
 mod floor;
 mod followed;
 mod forecast;
+mod identities;
 mod idle;
 pub mod keys;
 mod operations;

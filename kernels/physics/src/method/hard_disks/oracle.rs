@@ -65,17 +65,30 @@ fn random(domain: &Domain, count: usize, spread: f64, seed: u64) -> Vec<FlyingDi
     discs
 }
 
+/// Fast engine at the time 0.
+fn fast_engine(arena: Arena, discs: &[FlyingDisc], set: InstructionSet) -> Fast {
+    let mut engine = Fast::new(arena, discs.to_vec(), set, 0.0);
+    engine.begin().unwrap();
+    engine
+}
+
+/// Reference engine at the time 0.
+fn reference_engine(arena: Arena, discs: &[FlyingDisc], mask: &Mask) -> Box<dyn EventEngine> {
+    let mut engine = reference::engine(arena, discs.to_vec(), mask, 0.0);
+    engine.begin().unwrap();
+    engine
+}
+
 /// Reference engines with several masks, and fast engines with every instruction set.
 fn engines(arena: Arena, discs: &[FlyingDisc]) -> Vec<(String, Box<dyn EventEngine>)> {
     let mut engines: Vec<(String, Box<dyn EventEngine>)> = vec![];
     for mask in [Mask::square(2), Mask::round(3), Mask::round(4)] {
         let name = format!("{} offsets", mask.offsets().len());
-        engines.push((name, reference::begin(arena, discs.to_vec(), &mask, 0.0).unwrap()));
+        engines.push((name, reference_engine(arena, discs, &mask)));
     }
     if displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).is_some() {
         for set in InstructionSet::available() {
-            let engine = Fast::new(arena, discs.to_vec(), set, 0.0).unwrap();
-            engines.push((set.name().to_owned(), Box::new(engine)));
+            engines.push((set.name().to_owned(), Box::new(fast_engine(arena, discs, set))));
         }
     }
     engines
@@ -179,8 +192,8 @@ fn engines_conserve_energy_and_momentum() {
         |discs: &[FlyingDisc]| -> f64 { discs.iter().map(|it| 0.5 * it.mass * it.speed().powi(2)).sum() };
     let momentum = |discs: &[FlyingDisc]| -> f64 { discs.iter().map(|it| it.mass * it.velocity[0]).sum() };
     let before = [energy(&discs), momentum(&discs)];
-    let mut source = reference::begin(arena, discs.clone(), &Mask::square(2), 0.0).unwrap();
-    let mut fast = Fast::new(arena, discs, InstructionSet::best(), 0.0).unwrap();
+    let mut source = reference_engine(arena, &discs, &Mask::square(2));
+    let mut fast = fast_engine(arena, &discs, InstructionSet::best());
     let mut time = 0.0;
     for number in 0..100_000 {
         let [one, other] = [
@@ -214,7 +227,7 @@ fn engines_match_in_a_cluster() {
     }
     let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
     let before = displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).unwrap();
-    let narrowed = Fast::new(arena, discs.clone(), InstructionSet::best(), 0.0).unwrap().figures()[2].1;
+    let narrowed = fast_engine(arena, &discs, InstructionSet::best()).figures()[2].1;
     assert!(narrowed < before, "{narrowed}, {before}");
     assert!(compare_with_oracle(arena, &discs, 600) > 0);
 }
@@ -245,7 +258,7 @@ fn fast_engine_matches_for_wide_sizes() {
     let arena = Arena::new(domain, [0.0; 2], CollisionLaw::ELASTIC);
     for set in InstructionSet::available() {
         let (mut oracle, mut now) = (discs.clone(), 0.0);
-        let mut engine = Fast::new(arena, discs.clone(), set, 0.0).unwrap();
+        let mut engine = fast_engine(arena, &discs, set);
         for number in 0..60 {
             let event = brute_force_event(&arena, &mut oracle, now);
             now = event.time;
@@ -274,8 +287,8 @@ fn engines_agree_over_a_million_events() {
         };
         let arena = Arena::new(domain, gravity, law);
         let discs = random(&domain, 400, spread, 8);
-        let mut source = reference::begin(arena, discs.clone(), &Mask::round(3), 0.0).unwrap();
-        let mut fast = Fast::new(arena, discs, InstructionSet::best(), 0.0).unwrap();
+        let mut source = reference_engine(arena, &discs, &Mask::round(3));
+        let mut fast = fast_engine(arena, &discs, InstructionSet::best());
         for number in 0..1_000_000 {
             let one = source.next(f64::INFINITY, u64::MAX).unwrap();
             assert_eq!(one, fast.next(f64::INFINITY, u64::MAX).unwrap(), "event {number}, {domain:?}");

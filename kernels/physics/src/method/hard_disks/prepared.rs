@@ -1,10 +1,10 @@
 //! Prepared scene of hard discs: facts, memory forecast, settings and the start of a simulation.
 
-use super::checked::CheckedHardDisks;
+use super::checked::{CheckedHardDisks, StartingDiscs};
 use super::collision_log::COLUMNS;
 use super::forecast::{enskog_collision_rate, nanoseconds_per_collision, thermal_speed};
 use super::reference::grid::ExclusiveGridSize;
-use super::simulation::{HardDiskSimulation, RecordOptions};
+use super::simulation::{EngineConfiguration, HardDiskSimulation, RecordOptions};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
 use crate::method::reject_several_ranks;
@@ -47,6 +47,24 @@ impl CheckedHardDisks {
             event_columns: scene.collision_log.then_some(COLUMNS),
             model: Box::new(self),
         }
+    }
+
+    fn start_with(
+        &self,
+        discs: StartingDiscs,
+        purpose: StartPurpose,
+    ) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+        reject_several_ranks("the events of hard discs are executed in sequence, wherever they occur")?;
+        let is_run = purpose == StartPurpose::Run;
+        let observed = RecordOptions {
+            logs: is_run && self.scene.collision_log,
+            follows: is_run && self.scene.output.follows_motion(),
+        };
+        let engine = match &self.mask {
+            Some(mask) => EngineConfiguration::Reference(mask.clone()),
+            None => EngineConfiguration::Fast(self.scene.instructions()),
+        };
+        Ok(Box::new(HardDiskSimulation::new(self.scene.arena(self.domain), engine, discs, observed)?))
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -153,13 +171,14 @@ impl Startable for CheckedHardDisks {
     }
 
     fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
-        reject_several_ranks("the events of hard discs are executed in sequence, wherever they occur")?;
-        let is_run = purpose == StartPurpose::Run;
-        let observed = RecordOptions {
-            logs: is_run && self.scene.collision_log,
-            follows: is_run && self.scene.output.follows_motion(),
-        };
-        Ok(Box::new(HardDiskSimulation::new(self, observed)?))
+        self.start_with(self.discs(), purpose)
+    }
+
+    fn start_only(mut self: Box<Self>, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+        let discs = self.discs();
+        // Before the engine takes its memory.
+        self.particles = Arc::default();
+        self.start_with(discs, purpose)
     }
 
     fn started_from(&self, particles: Particles) -> Prepared {

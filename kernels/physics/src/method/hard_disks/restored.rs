@@ -13,12 +13,13 @@ const ROUNDING: f64 = 1e-6;
 const MOST_ENERGY: f64 = 1e4;
 
 /// Checks that discs are inside the box, do not overlap, are not ahead of the clock, and have no more energy than the scene can give.
+/// `energy_at_start` is the [`available_energy`] (energy).
 ///
 /// # Errors
 /// A message that names the first violation.
 pub(super) fn check_restored_discs(
     arena: &Arena,
-    start: &Particles,
+    energy_at_start: f64,
     discs: &[FlyingDisc],
     clock: &Clock,
 ) -> Result<(), String> {
@@ -38,7 +39,7 @@ pub(super) fn check_restored_discs(
     let kinetic: f64 = discs.iter().map(|disc| 0.5 * disc.mass * disc.speed().powi(2)).sum();
     // Only a floor adds energy with every event; a thermal side re-emits at its own temperature.
     let given = if arena.law.floor.is_some() { 1.0 + clock.events as f64 } else { 1.0 };
-    let most = MOST_ENERGY * given * available_energy(arena, start);
+    let most = MOST_ENERGY * given * energy_at_start;
     if kinetic > most || kinetic.is_nan() {
         return Err(format!(
             "the discs have the kinetic energy {kinetic:?}, but the scene can give at most {most:?}"
@@ -72,7 +73,7 @@ fn is_inside(arena: &Arena, disc: &FlyingDisc, place: [f64; 2]) -> bool {
 }
 
 /// Energy available to the discs: at the start, by falling, and from a side in one event (energy).
-fn available_energy(arena: &Arena, start: &Particles) -> f64 {
+pub(super) fn available_energy(arena: &Arena, start: &Particles) -> f64 {
     let gravity = arena.space.gravity().unwrap_or_default();
     let thermal = arena.law.thermal.map_or(0.0, |thermal| thermal.temperature);
     let floor =

@@ -1,6 +1,6 @@
 //! Simulation of hard discs: advances the engine event by event and observes the discs.
 
-use super::checked::CheckedHardDisks;
+use super::checked::StartingDiscs;
 use super::collapse::{CollapseMonitor, EndlessCollisions};
 use super::collision_log::Log;
 use super::engine::{EngineError, EventEngine, EventPartner, ExecutedEvent};
@@ -8,6 +8,7 @@ use super::event::Arena;
 use super::failures::{culprit, failure};
 use super::fast::Fast;
 use super::followed::CrossingCounter;
+use super::identities::DiscIdentities;
 use super::idle::is_idle_forever;
 use super::quantities::{HardDiskObservation, OBSERVABLES};
 use super::reference;
@@ -18,10 +19,9 @@ use crate::method::observed::values;
 use crate::method::{Clock, Culprit, PerParticle, PhysicsFailure, RunWarning, Simulation, Snapshot, Until};
 use crate::number::{count_with_noun, significant};
 use crate::observe::relative_energy_error;
-use crate::particles::{GrainStates, Particles, in_space};
+use crate::particles::{GrainStates, Particle, Particles};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use stripmine_kernels::InstructionSet;
@@ -44,9 +44,9 @@ pub(super) struct HardDiskSimulation {
     start: [f64; 2],
     /// True if the idleness check has run since the last event and proved nothing.
     may_meet: bool,
-    /// The particles at the start, shared with the scene, and the index among them of each disc.
-    particles: Arc<Particles>,
-    places: Vec<usize>,
+    identities: DiscIdentities,
+    /// Energy available to the discs at the start, for the check of a checkpoint.
+    available_energy: f64,
     /// Rows of collisions, if requested.
     log: Option<Log>,
     /// Crossings of periodic sides, if displacements are requested.
@@ -65,62 +65,58 @@ pub(super) struct RecordOptions {
 
 /// Configuration of the search for events.
 #[derive(Clone, Debug)]
-enum EngineConfiguration {
+pub(super) enum EngineConfiguration {
     Fast(InstructionSet),
     Reference(Mask),
 }
 
 impl EngineConfiguration {
-    fn begin(
-        &self,
-        arena: Arena,
-        discs: Vec<FlyingDisc>,
-        time: f64,
-    ) -> Result<Box<dyn EventEngine>, EngineError> {
-        Ok(match self {
-            EngineConfiguration::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)?),
-            EngineConfiguration::Reference(mask) => reference::begin(arena, discs, mask, time)?,
-        })
+    fn engine(&self, arena: Arena, discs: Vec<FlyingDisc>, time: f64) -> Box<dyn EventEngine> {
+        match self {
+            EngineConfiguration::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)),
+            EngineConfiguration::Reference(mask) => reference::engine(arena, discs, mask, time),
+        }
     }
 }
 
 impl HardDiskSimulation {
     /// Starts the simulation from the discs of a checked scene.
     pub(super) fn new(
-        checked: &CheckedHardDisks,
+        arena: Arena,
+        engine: EngineConfiguration,
+        StartingDiscs { discs, identities, energy: available_energy }: StartingDiscs,
         observed: RecordOptions,
     ) -> Result<HardDiskSimulation, PhysicsFailure> {
-        let (discs, places) = checked.discs();
-        let arena = checked.scene.arena(checked.domain);
         let kinetic = TotalMotion::of(discs.iter(), &arena, 0.0).kinetic();
         let start = [kinetic, potential(discs.iter(), &arena, 0.0)];
         let watch = CollapseMonitor::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
-        let engine_choice = match &checked.mask {
-            Some(mask) => EngineConfiguration::Reference(mask.clone()),
-            None => EngineConfiguration::Fast(checked.scene.instructions()),
-        };
         let followed = observed.follows.then(|| CrossingCounter::new(&arena, discs.clone()));
-        // The engine consumes the discs, so a failure builds them again.
-        let stopped = |why| {
-            let (discs, _) = checked.discs();
-            failure(why, &|disc| discs[disc as usize], &checked.particles, &places, Clock::default())
-        };
-        let engine = engine_choice.begin(arena, discs, 0.0).map_err(stopped)?;
-        Ok(HardDiskSimulation {
-            engine,
+        let mut simulation = HardDiskSimulation {
+            engine: engine.engine(arena, discs, 0.0),
             arena,
             clock: Clock::default(),
             totals: CollisionTotals::default(),
             watch,
             row: IntervalMark::default(),
             start,
-            particles: Arc::clone(&checked.particles),
-            places,
+            identities,
+            available_energy,
             may_meet: false,
             log: observed.logs.then(Log::default),
             followed,
             seconds: 0.0,
-        })
+        };
+        match simulation.engine.begin() {
+            Ok(()) => Ok(simulation),
+            Err(why) => Err(simulation.failure(why)),
+        }
+    }
+
+    /// Disc with a number as it is now.
+    fn particle(&self, number: u32) -> Particle {
+        let (disc, time) = (self.engine.disc(number), self.clock.time);
+        let position = self.arena.position_at(disc, time);
+        self.identities.particle(number, disc, position, disc.velocity_at(&self.arena.space, time))
     }
 
     /// Iterates over the discs in the order of their numbers.
@@ -143,8 +139,7 @@ impl HardDiskSimulation {
             totals,
             watch,
             may_meet,
-            particles,
-            places,
+            identities,
             log,
             followed,
             ..
@@ -163,8 +158,7 @@ impl HardDiskSimulation {
                 }
             }
             if let Some(log) = log {
-                let all = particles.all();
-                let id = |disc: u32| all[places[disc as usize]].id;
+                let id = |disc: u32| identities.id(disc);
                 log.add(clock.events, happened, arena, &|disc| discs.disc(disc), &id);
             }
             let crossing = || crossing((0..discs.count() as u32).map(|number| discs.disc(number)));
@@ -192,7 +186,7 @@ impl HardDiskSimulation {
     }
 
     fn failure(&self, why: EngineError) -> PhysicsFailure {
-        failure(why, &|disc| *self.engine.disc(disc), &self.particles, &self.places, self.clock)
+        failure(why, self.engine.as_ref(), &self.identities, self.clock)
     }
 
     fn endless(
@@ -236,7 +230,7 @@ impl HardDiskSimulation {
     }
 
     fn culprit(&self, disc: u32) -> Culprit {
-        culprit(disc, self.engine.disc(disc), &self.particles, &self.places)
+        culprit(disc, self.engine.as_ref(), &self.identities)
     }
 }
 
@@ -298,21 +292,18 @@ impl HardDiskSimulation {
 
 impl PerParticle for HardDiskSimulation {
     fn particles(&self) -> Particles {
-        let mut particles = Particles::clone(&self.particles);
-        let all = particles.all_mut();
-        let time = self.clock.time;
-        for (disc, &place) in self.discs().zip(&self.places) {
-            all[place].position = in_space(self.arena.position_at(disc, time));
-            all[place].velocity = in_space(disc.velocity_at(&self.arena.space, time));
-        }
-        particles
+        Particles::of_grains(self.identities.in_scene_order(|number| self.particle(number)))
+    }
+
+    fn checksum(&self) -> String {
+        Particles::checksum_in_order((0..self.engine.count() as u32).map(|number| self.particle(number)))
     }
 
     fn states(&self, states: &mut GrainStates) {
         let time = self.clock.time;
-        for (disc, &number) in self.discs().zip(&self.places) {
+        for (disc, number) in self.discs().zip(0..) {
             states.store_state(
-                number,
+                self.identities.place(number),
                 self.arena.position_at(disc, time),
                 disc.velocity_at(&self.arena.space, time),
             );
@@ -324,11 +315,8 @@ impl PerParticle for HardDiskSimulation {
         else {
             return vec![];
         };
-        let mut images = vec![[0; 2]; self.particles.len()];
-        for (number, &place) in self.places.iter().enumerate() {
-            images[place] = followed.image(&self.arena, number, self.clock.time);
-        }
-        images
+        let image = |number| followed.image(&self.arena, number as usize, self.clock.time);
+        self.identities.in_scene_order(image)
     }
 }
 
@@ -408,7 +396,7 @@ impl Simulation for HardDiskSimulation {
         }
         let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
-        check_restored_discs(&self.arena, &self.particles, &discs, &clock)?;
+        check_restored_discs(&self.arena, self.available_energy, &discs, &clock)?;
         self.totals = CollisionTotals::totals_from_snapshot(&snapshot, clock.events)?;
         self.row = IntervalMark::mark_from_snapshot(&snapshot, &self.totals)?;
         self.watch.restore(&snapshot)?;
@@ -435,7 +423,7 @@ impl Simulation for HardDiskSimulation {
     fn summary(&self) -> Map<String, Value> {
         let CollisionTotals { collisions, made_elastic, virial, .. } = self.totals;
         let entries = [
-            ("discs", json!(self.places.len())),
+            ("discs", json!(self.identities.count())),
             ("collisions", json!(collisions)),
             ("made_elastic", json!(made_elastic)),
             ("virial", json!(virial)),
@@ -474,7 +462,7 @@ impl Simulation for HardDiskSimulation {
         format!(
             "{}, {} collisions of pairs; temperature {temperature}; since the start: compressibility {}, {} collisions per disc and \
              unit of time",
-            count_with_noun(self.places.len(), "disc", "discs"),
+            count_with_noun(self.identities.count(), "disc", "discs"),
             self.totals.collisions,
             significant(compressibility, 5),
             significant(collision_rate, 5)

@@ -1,4 +1,8 @@
-//! Cells of the registered positions: slots side by side, so that a row of three cells is compared in two registers.
+//! Cells of the registered positions: slots side by side, so that two neighbouring cells are compared in two registers.
+//!
+//! A cell is two ranges of sight wide and one high. A disc in its left half sees into the cell on the left, a disc in its right half into
+//! the one on the right. Compared with three square cells in a row, as many slots are compared and a quarter less are stored: a wide cell
+//! has relatively fewer discs more than the mean.
 //!
 //! A slot stores the position relative to the centre of its cell in single precision: its error is below 1e-7 of an edge in a box of
 //! any size. Across a periodic side the neighbouring cell is the first or last one, and relative positions need no correction.
@@ -10,14 +14,16 @@ use stripmine_kernels::isa::{AlignedColumn, Vector};
 /// Maximum number of neighbours found around a disc, more than a list holds.
 pub(super) const FOUND: usize = 128;
 
-/// Slots of a cell are a multiple of this. On average a cell of equal discs has three of them.
-const SLOTS: usize = 8;
-/// Slots that are compared together: those of three cells of equal discs.
-const ABREAST: usize = 3 * SLOTS;
-/// Slots beyond those of three cells that whole registers load.
+/// Slots of a cell are a multiple of this. On average a cell of equal discs fills six of them.
+const SLOTS: usize = 12;
+/// Slots that are compared together: those of two cells of equal discs.
+const ABREAST: usize = 2 * SLOTS;
+/// Slots beyond those of two cells that whole registers load.
 const BEYOND: usize = 8;
 /// Slots for each disc that a cell has on average.
-const SPARE: f64 = 2.0;
+const SPARE: f64 = 1.75;
+/// Width and height of a cell, in ranges of sight.
+const SIGHTS: [f64; 2] = [2.0, 1.0];
 /// Marks an empty slot.
 const EMPTY: u32 = u32::MAX;
 /// Position in an empty slot: far from any disc, and its square is finite.
@@ -46,7 +52,7 @@ pub(super) struct RegistrationCells {
     discs: AlignedColumn<u32>,
     /// Discs of each row of cells that found no slot.
     crowded: Vec<Vec<(u32, [f64; 2])>>,
-    /// Offset of the cell of each slot of three cells (length).
+    /// Offset of the cell of each slot, of the cells on the left, in the middle and on the right (length).
     offsets: AlignedColumn<f32>,
 }
 
@@ -62,12 +68,15 @@ impl RegistrationCells {
     /// Creates empty cells that find discs within `sight` (length).
     pub(super) fn new(domain: &Domain, count: usize, sight: f64) -> RegistrationCells {
         let most = (count as f64).sqrt().max(8.0);
+        let least = SIGHTS.map(|sights| sights * sight);
         let counts = [0, 1].map(|axis| match domain.sides[axis] {
-            BoxSide::Open | BoxSide::Flat => most as usize,
-            BoxSide::Periodic(side) | BoxSide::Closed(side) => ((side / sight) as usize).max(1),
+            // Lists without discs take no memory.
+            _ if count == 0 => 1,
+            BoxSide::Open | BoxSide::Flat => (most / SIGHTS[axis]) as usize,
+            BoxSide::Periodic(side) | BoxSide::Closed(side) => ((side / least[axis]) as usize).max(1),
         });
         let edge = [0, 1].map(|axis| match domain.sides[axis] {
-            BoxSide::Open | BoxSide::Flat => sight,
+            BoxSide::Open | BoxSide::Flat => least[axis],
             BoxSide::Periodic(side) | BoxSide::Closed(side) => side / counts[axis] as f64,
         });
         let mean = count as f64 / (counts[0] * counts[1]) as f64;
@@ -108,19 +117,20 @@ impl RegistrationCells {
     ) -> Option<usize> {
         let CellPosition { cell: [column, row], relative: [own_x, own_y] } = self.locate(domain, position);
         let (near, x) = (registers.splat(self.near), registers.splat(own_x));
+        let left = self.slots_on_the_left(own_x);
         let mut count = 0;
         for step in [-1, 0, 1] {
             let Some(row) = self.neighbouring_row(row, step) else { continue };
-            let first = self.slot([column, row]) - self.slots;
+            let first = self.slot([column, row]) - left;
             let y = registers.splat(own_y - step as f32 * self.edge[1] as f32);
-            for start in (0..3 * self.slots).step_by(ABREAST) {
+            for start in (0..2 * self.slots).step_by(ABREAST) {
                 let mut bits = 0;
                 for begin in (start..start + ABREAST).step_by(R::LANES) {
                     // SAFETY: a row of cells is followed by another one or by as many slots as are loaded, and there are as many
                     // offsets: a register has at most sixteen lanes.
                     let [offset, there_x, there_y] = unsafe {
                         [
-                            registers.load(self.offsets.as_ptr().add(begin)),
+                            registers.load(self.offsets.as_ptr().add(self.slots - left + begin)),
                             registers.load(self.x.as_ptr().add(first + begin)),
                             registers.load(self.y.as_ptr().add(first + begin)),
                         ]
@@ -153,10 +163,11 @@ impl RegistrationCells {
     /// Prefetches the cache lines that a search around a position reads.
     #[inline(always)]
     pub(super) fn prefetch(&self, domain: &Domain, position: [f64; 2]) {
-        let CellPosition { cell: [column, row], .. } = self.locate(domain, position);
+        let CellPosition { cell: [column, row], relative: [own_x, _] } = self.locate(domain, position);
         for row in [-1, 0, 1].into_iter().filter_map(|step| self.neighbouring_row(row, step)) {
-            let first = self.slot([column, row]) - self.slots;
-            for slot in [first, first + ABREAST - 1] {
+            let first = self.slot([column, row]) - self.slots_on_the_left(own_x);
+            // Two cells are in up to three cache lines.
+            for slot in [first, first + SLOTS, first + ABREAST - 1] {
                 self.x.prefetch(slot);
                 self.y.prefetch(slot);
                 self.discs.prefetch(slot);
@@ -207,6 +218,12 @@ impl RegistrationCells {
             return Some(next as usize);
         }
         self.wraps[1].then(|| next.rem_euclid(count) as usize)
+    }
+
+    /// Slots before those of a disc's cell that the disc sees: all of the cell on the left from the left half, none from the right one.
+    #[inline(always)]
+    fn slots_on_the_left(&self, own_x: f32) -> usize {
+        if own_x < 0.0 { self.slots } else { 0 }
     }
 
     /// First slot of a cell.

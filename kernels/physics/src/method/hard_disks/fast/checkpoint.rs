@@ -1,14 +1,11 @@
 //! State of the fast engine in a checkpoint, and resumption from it.
 
 use super::leaving::leaving_time;
-use super::lists::{DiscNeighbourLists, Radii};
-use super::queue::EventQueue;
-use super::{ExpectedEvent, Fast, LISTED, WALL, rank};
+use super::{ExpectedEvent, Fast, WALL, rank};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
 use stripmine_kernels::backend::Scalar;
 use stripmine_kernels::flight::{FlyingDisc, MOST_PARTNERS, ROW_UNIT};
-use stripmine_kernels::isa::AlignedColumn;
 
 /// Checkpoint columns of the registered positions.
 const REGISTERED: [&str; 2] = ["registered.x", "registered.y"];
@@ -84,29 +81,23 @@ impl Fast {
         self.renewals = kept.count("engine.renewals")?;
         self.events = kept.count("engine.events")?;
         self.sorted_until = kept.count("engine.sorted_until")?;
-        self.discs = AlignedColumn::new(0, discs);
-        self.numbers = AlignedColumn::new(1, 0..count as u32);
+        // The old lists are released before there are new ones.
+        self.lists = self.lists_of(0, 0);
+        self.discs.copy_from_slice(&discs);
+        drop(discs);
+        self.numbers.iter_mut().zip(0..).for_each(|(number, disc)| *number = disc);
         self.sort(self.time);
         let place_of = |number: u32| {
             let number = number as usize;
             [registered[0][number], registered[1][number]]
         };
-        let places: Vec<[f64; 2]> = self.numbers.iter().map(|&number| place_of(number)).collect();
-        let (domain, discs) = (self.arena.domain, &self.discs);
-        let mut lists = DiscNeighbourLists::new(
-            domain,
-            count,
-            self.displacement_limit,
-            self.largest,
-            LISTED,
-            stride as usize,
-        );
-        let radii = Radii { equal: self.alike.then_some(self.largest), discs };
-        let full = lists.begin(Scalar::default(), &places, radii);
-        full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
+        let mut lists = self.lists_of(count, stride as usize);
+        let positions = self.numbers.iter().map(|&number| place_of(number));
+        let full = lists.begin(Scalar::default(), positions, self.radii());
         self.lists = lists;
+        full.map_err(|disc| format!("the list of disc number {} is full", self.numbers[disc as usize]))?;
         self.check_expectations(times)?;
-        self.queue = EventQueue::new(count);
+        self.queue.clear();
         for (place, &number) in self.numbers.iter().enumerate() {
             let expects = with[number as usize];
             let with = if expects >= WALL[0] { expects } else { self.places[expects as usize] };

@@ -129,21 +129,18 @@ impl DiscNeighbourLists {
         self.cells.prefetch(&self.domain, position);
     }
 
-    /// Registers unregistered discs at `positions` inside the box (length). Each disc lists those registered before it, and they list
-    /// it.
+    /// Registers unregistered discs, in their order, at `positions` inside the box (length). Each disc lists those registered before it,
+    /// and they list it.
     ///
     /// # Errors
     /// The disc whose list is full.
     pub(super) fn begin<R: Registers<Lane = f32>>(
         &mut self,
         registers: R,
-        positions: &[[f64; 2]],
+        positions: impl Iterator<Item = [f64; 2]>,
         radii: Radii<'_>,
     ) -> Result<(), u32> {
-        for (disc, &position) in positions.iter().enumerate() {
-            self.enter(registers, disc as u32, position, radii)?;
-        }
-        Ok(())
+        (0..).zip(positions).try_for_each(|(disc, position)| self.enter(registers, disc, position, radii))
     }
 
     /// Registers a disc at a new position inside the box (length).
@@ -274,7 +271,7 @@ mod tests {
                 *position = [0, 1].map(|axis| domain.origin[axis] + 0.3 + 0.01 * position[axis]);
             }
             let mut lists = DiscNeighbourLists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
-            lists.begin(registers, &positions, radii_of_discs).unwrap();
+            lists.begin(registers, positions.iter().copied(), radii_of_discs).unwrap();
             for moved in 0..400 {
                 let disc = moved % count;
                 positions[disc] = draw();

@@ -113,22 +113,14 @@ pub(crate) struct Fast {
 }
 
 impl Fast {
-    /// Starts the engine at a time.
-    ///
-    /// # Errors
-    /// [`EngineError`] if a disc has more neighbours than a list can hold.
-    pub(super) fn new(
-        arena: Arena,
-        discs: Vec<FlyingDisc>,
-        set: InstructionSet,
-        time: f64,
-    ) -> Result<Fast, EngineError> {
+    /// Takes the discs at a time; [`begin`](EventEngine::begin) finds their events.
+    pub(super) fn new(arena: Arena, discs: Vec<FlyingDisc>, set: InstructionSet, time: f64) -> Fast {
         let count = discs.len();
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         let displacement_limit =
             displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).unwrap_or(0.1 * largest);
         let alike = discs.iter().all(|disc| disc.radius == largest);
-        let mut engine = Fast {
+        Fast {
             lists: DiscNeighbourLists::new(arena.domain, 0, displacement_limit, largest, LISTED, 0),
             arena,
             set,
@@ -147,24 +139,29 @@ impl Fast {
             operations: Operations::default(),
             events: 0,
             sorted_until: 0,
-        };
-        engine.begin(time)?;
-        Ok(engine)
+        }
+    }
+
+    /// Creates lists for `count` discs, with rows of at least `stride` entries.
+    fn lists_of(&self, count: usize, stride: usize) -> DiscNeighbourLists {
+        let Fast { arena, displacement_limit, largest, .. } = *self;
+        DiscNeighbourLists::new(arena.domain, count, displacement_limit, largest, LISTED, stride)
     }
 
     /// Sorts the discs by position at a time, registers all, and predicts the next event of each.
-    fn begin(&mut self, time: f64) -> Result<(), EngineError> {
-        self.sort(time);
+    fn sort_and_register(&mut self, time: f64) -> Result<(), EngineError> {
         let count = self.discs.len();
         let mut stride = self.lists.stride();
+        // The old lists are released first: they are larger than all that sorting takes.
+        self.lists = self.lists_of(0, 0);
+        self.sort(time);
         loop {
+            let mut lists = self.lists_of(count, stride);
             // A disc is registered within the displacement limit, which may have become smaller.
-            let places: Vec<[f64; 2]> = self.discs.iter().map(|disc| self.registered(disc, time)).collect();
-            let (domain, discs) = (self.arena.domain, &self.discs);
-            self.lists =
-                DiscNeighbourLists::new(domain, count, self.displacement_limit, self.largest, LISTED, stride);
-            let radii = Radii { equal: self.alike.then_some(self.largest), discs };
-            let Err(full) = self.lists.begin(Scalar::default(), &places, radii) else { break };
+            let positions = self.discs.iter().map(|disc| self.registered(disc, time));
+            let registered = lists.begin(Scalar::default(), positions, self.radii());
+            self.lists = lists;
+            let Err(full) = registered else { break };
             stride = self.lists.stride() + ROW_UNIT;
             if stride > MOST_PARTNERS {
                 if self.displacement_limit < 0.02 * self.largest {
@@ -172,8 +169,9 @@ impl Fast {
                 }
                 (self.displacement_limit, stride) = (0.7 * self.displacement_limit, 0);
             }
+            self.lists = self.lists_of(0, 0);
         }
-        self.queue = EventQueue::new(count);
+        self.queue.clear();
         self.partners.fill(ExpectedEvent::RENEWAL);
         self.renewals += count as u64;
         self.operations.cell_updates += count as u64;
@@ -195,12 +193,27 @@ impl Fast {
         let mut order: Vec<(u64, u32, u32)> =
             discs.zip(0..).map(|((&number, disc), place)| (key(disc), number, place)).collect();
         order.sort_unstable();
-        let sorted = order.iter().map(|&(.., place)| self.discs[place as usize]);
-        self.discs = AlignedColumn::new(0, sorted);
-        for (place, (_, number, _)) in order.into_iter().enumerate() {
+        for (place, &(_, number, _)) in order.iter().enumerate() {
             self.numbers[place] = number;
             self.places[number as usize] = place as u32;
         }
+        // In place, cycle by cycle of the permutation: two copies of the discs would be the peak of the memory.
+        for begin in 0..order.len() {
+            let first = self.discs[begin];
+            let mut to = begin;
+            loop {
+                let from = std::mem::replace(&mut order[to].2, to as u32) as usize;
+                if from == to {
+                    break;
+                }
+                self.discs[to] = if from == begin { first } else { self.discs[from] };
+                to = from;
+            }
+        }
+    }
+
+    fn radii(&self) -> Radii<'_> {
+        Radii { equal: self.alike.then_some(self.largest), discs: &self.discs }
     }
 
     /// Predicts the next event of a disc at a time.
@@ -263,7 +276,7 @@ impl Fast {
         let radii = Radii { equal: alike.then_some(*largest), discs };
         match lists.renew(registers.single(), disc, place, radii) {
             Ok(()) => Ok(true),
-            Err(_) => self.begin(time).map(|()| false),
+            Err(_) => self.sort_and_register(time).map(|()| false),
         }
     }
 
@@ -347,7 +360,7 @@ impl Fast {
                 self.time = time;
                 self.events += 1;
                 if self.events > self.sorted_until {
-                    self.begin(time)?;
+                    self.sort_and_register(time)?;
                 }
                 if !observer(&happened, self) {
                     return Ok(true);
@@ -368,6 +381,10 @@ impl FlyingDiscs for Fast {
 }
 
 impl EventEngine for Fast {
+    fn begin(&mut self) -> Result<(), EngineError> {
+        self.sort_and_register(self.time)
+    }
+
     fn run(&mut self, until: f64, most: u64, observer: &mut EventObserver<'_>) -> Result<bool, EngineError> {
         let set = self.set;
         let mut ended = Ok(false);

@@ -12,6 +12,9 @@ const GROUP: usize = 16;
 /// Maximum number of events sorted at a time: a few times the prefetch distance.
 const MOST_WANTED: usize = 256;
 
+/// Time span of the first sorted events. It adapts quickly to the desired number, whatever the unit of time.
+const SHORTEST: f64 = f64::MIN_POSITIVE;
+
 /// Times of a group.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
@@ -107,12 +110,18 @@ impl EventQueue {
             next: vec![],
             over: 0,
             end: 0.0,
-            // The span adapts quickly to the desired number, whatever the unit of time.
-            span: f64::MIN_POSITIVE,
+            span: SHORTEST,
             wanted,
             found: vec![],
             times: vec![],
         }
+    }
+
+    /// Removes all events.
+    pub(super) fn clear(&mut self) {
+        self.levels.iter_mut().for_each(|level| level.fill(TimeGroup::NONE));
+        self.next.clear();
+        (self.over, self.end, self.span) = (0, 0.0, SHORTEST);
     }
 
     /// Time of each disc's next event, padded with infinities.

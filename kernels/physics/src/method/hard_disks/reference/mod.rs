@@ -73,45 +73,28 @@ const SUMS: [&str; 5] = ["engine.time", "engine.slack", "engine.since", "engine.
 /// Safety factor for distances that must not be exceeded.
 const ROUNDED_UP: f64 = 1.0 + 1e-9;
 
-/// Starts the engine at a time, over all cells of a box, or over the occupied cells if there is no ceiling.
-///
-/// # Errors
-/// [`EngineError`] if discs cannot be assigned to cells.
-pub(crate) fn begin(
-    arena: Arena,
-    discs: Vec<FlyingDisc>,
-    mask: &Mask,
-    time: f64,
-) -> Result<Box<dyn EventEngine>, EngineError> {
+/// Takes the discs at a time, over all cells of a box, or over the occupied cells if there is no ceiling.
+pub(crate) fn engine(arena: Arena, discs: Vec<FlyingDisc>, mask: &Mask, time: f64) -> Box<dyn EventEngine> {
     let smallest = discs.iter().map(|disc| disc.radius).fold(f64::INFINITY, f64::min);
     let sizes = ExclusiveGridSize::new(&arena.domain, smallest);
     let reach = sizes.reach(mask);
-    Ok(match arena.domain.sides[1] {
+    match arena.domain.sides[1] {
         BoxSide::Open => {
             let cells = HalfSpaceGrid::new(arena.domain, sizes, mask);
-            Box::new(ReferenceEngine::new(arena, discs, cells, reach, time)?)
+            Box::new(ReferenceEngine::new(arena, discs, cells, reach, time))
         }
-        _ => Box::new(ReferenceEngine::new(
-            arena,
-            discs,
-            ExclusiveGrid::new(arena.domain, sizes, mask),
-            reach,
-            time,
-        )?),
-    })
+        _ => {
+            let cells = ExclusiveGrid::new(arena.domain, sizes, mask);
+            Box::new(ReferenceEngine::new(arena, discs, cells, reach, time))
+        }
+    }
 }
 
 impl<C: DiscCells> ReferenceEngine<C> {
-    /// Starts at a time; the cells contain every other disc within `reach` (length) of a disc.
-    fn new(
-        arena: Arena,
-        discs: Vec<FlyingDisc>,
-        grid: C,
-        reach: f64,
-        time: f64,
-    ) -> Result<ReferenceEngine<C>, EngineError> {
+    /// Takes the discs at a time; the cells contain every other disc within `reach` (length) of a disc.
+    fn new(arena: Arena, discs: Vec<FlyingDisc>, grid: C, reach: f64, time: f64) -> ReferenceEngine<C> {
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-        let mut engine = ReferenceEngine {
+        ReferenceEngine {
             grid,
             events: vec![PredictedEvent::NONE; discs.len()],
             tree: TournamentTree::new(discs.len(), |_| f64::INFINITY),
@@ -127,9 +110,7 @@ impl<C: DiscCells> ReferenceEngine<C> {
             lost: vec![],
             filled: time,
             speeds: vec![],
-        };
-        engine.remap(time)?;
-        Ok(engine)
+        }
     }
 
     /// Time up to which the masks contain every partner. No later event is predicted.
@@ -306,6 +287,10 @@ impl<C: DiscCells> FlyingDiscs for ReferenceEngine<C> {
 }
 
 impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
+    fn begin(&mut self) -> Result<(), EngineError> {
+        self.remap(self.time)
+    }
+
     fn run(&mut self, until: f64, most: u64, observer: &mut EventObserver<'_>) -> Result<bool, EngineError> {
         loop {
             let first = self.tree.first();
