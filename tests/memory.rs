@@ -185,7 +185,18 @@ fn hard_discs_take_the_estimated_memory() {
 #[test]
 fn a_hard_disc_takes_two_hundred_bytes() {
     let taken = |discs: &str| {
-        let words = ["bench", "hard-disks", "--steps", "1000", "--repeats", "1", "--threads", "1", "--particles", discs];
+        let words = [
+            "bench",
+            "hard-disks",
+            "--steps",
+            "1000",
+            "--repeats",
+            "1",
+            "--threads",
+            "1",
+            "--particles",
+            discs,
+        ];
         peak(&words.map(str::to_owned)) as f64
     };
     let each = (taken("1000000") - taken("250000")) / 750_000.0;

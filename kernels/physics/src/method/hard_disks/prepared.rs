@@ -17,6 +17,7 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::sync::Arc;
 use stripmine_kernels::flight::FlyingDisc;
+use stripmine_kernels::isa::aligned_column::column_memory;
 
 impl CheckedHardDisks {
     /// Turns the checked scene into the interface common to all methods.
@@ -117,20 +118,24 @@ impl CheckedHardDisks {
                     ExclusiveGridSize::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
                 let margin = 2 * mask.half_width() as usize;
                 let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
-                // Event, node, cell and position per disc; the peak is lower than with lists, because nothing is sorted (measured).
-                4.0 * cells + (16.0 + 8.0 + 4.0 + 24.0 - 40.0) * discs
+                // Disc, event, node, cell and position.
+                4.0 * cells + (64.0 + 16.0 + 8.0 + 4.0 + 24.0) * discs
             }
-            // List, time, partner, position, numbers and slots of cells; discs and keys again while they are sorted.
-            None => (64.0 + 9.2 + 8.0 + 16.0 + 8.0 + 36.0 + 80.0) * discs,
+            None => {
+                // Disc, list, position, time, partner and number; both coordinates and the disc of 2.1 slots of cells.
+                let columns = [64.0, 64.0, 16.0, 8.5, 8.0, 4.0, 8.4, 8.4, 8.4];
+                let places = size_of::<u32>() as f64 * discs;
+                places + columns.into_iter().map(|bytes| column_memory(bytes * discs)).sum::<f64>()
+            }
         };
         // Each disc in the state after its last event, and two counts.
         let followed = match self.scene.output.follows_motion() {
             true => (size_of::<FlyingDisc>() + 2 * size_of::<f64>()) as f64,
             false => 0.0,
         };
-        // The disc; its particle in the scene, which the simulation shares; a copy in the current state on resumption; two frames, one being
-        // built and one being written; and the written text.
-        let disc = size_of::<FlyingDisc>() as f64 + 4.0 * size_of::<Particle>() as f64 + 100.0 + followed;
+        // The particle of the scene; two frames, one being built and one being written; and the written text. Resumption takes less than the
+        // frames: a copy of the disc, the checkpoint, and the search for overlaps.
+        let disc = 3.0 * size_of::<Particle>() as f64 + 100.0 + followed;
         MemoryForecast {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
