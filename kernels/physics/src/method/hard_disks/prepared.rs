@@ -118,8 +118,8 @@ impl CheckedHardDisks {
                     ExclusiveGridSize::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
                 let margin = 2 * mask.half_width() as usize;
                 let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
-                // Disc, event, node, cell and position.
-                4.0 * cells + (64.0 + 16.0 + 8.0 + 4.0 + 24.0) * discs
+                // Disc, event, node, cell, position and speed.
+                4.0 * cells + (64.0 + 16.0 + 8.0 + 4.0 + 24.0 + 8.0) * discs
             }
             None => {
                 // Disc, list, position, time, partner and number; both coordinates and the disc of 2.1 slots of cells.
@@ -133,9 +133,10 @@ impl CheckedHardDisks {
             true => (size_of::<FlyingDisc>() + 2 * size_of::<f64>()) as f64,
             false => 0.0,
         };
-        // The particle of the scene; two frames, one being built and one being written; and the written text. Resumption takes less than the
-        // frames: a copy of the disc, the checkpoint, and the search for overlaps.
-        let disc = 3.0 * size_of::<Particle>() as f64 + 100.0 + followed;
+        // A resumed run takes most: a copy of the disc, the checkpoint as bytes and as columns, and the search for overlaps (measured). Two frames
+        // and their text take 283 bytes a disc.
+        let resumption = 305.0;
+        let disc = size_of::<Particle>() as f64 + resumption + followed;
         MemoryForecast {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
