@@ -208,7 +208,7 @@ impl BenchVerb {
         let prepared = (entry.prepare)(values)?;
         let steps = self.steps.unwrap_or_else(|| (bench.amount)(prepared.particles().grain_count() as u64));
         let repeats = self.repeats.into();
-        Ok(ThroughputRequest { bench, prepared, equilibration: 200.max(steps / 10), steps, repeats })
+        Ok(ThroughputRequest { bench, prepared, steps, repeats })
     }
 
     /// Measures on several numbers of ranks and threads in turn.

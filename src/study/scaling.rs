@@ -84,11 +84,11 @@ pub(crate) fn scaling(
     for &crew in &crews {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(crew.threads).build();
         let pool = pool.map_err(MeasurementError::Threads)?;
-        let ThroughputRequest { bench, prepared, equilibration, steps, repeats } = measurement()?;
+        let ThroughputRequest { bench, prepared, steps, repeats } = measurement()?;
         let begun = Instant::now();
         let begin = || {
             ranks::with_backend(ranks::RankBackend::Threads(crew.ranks), || {
-                ThroughputRun::begin(bench, prepared, equilibration, steps)
+                ThroughputRun::begin(bench, prepared, steps)
             })
         };
         let run = pool.install(begin)?;

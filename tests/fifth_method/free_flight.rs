@@ -33,6 +33,7 @@ pub static ENTRY: MethodEntry = MethodEntry {
         rate: "particle_steps_per_second",
         until: Until::Steps,
         amount: |_| 100,
+        least_warm_up: 1,
         defaults: &[("particles", "50")],
         options: &[BenchOption {
             name: "particles",

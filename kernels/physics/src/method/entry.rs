@@ -114,6 +114,8 @@ pub struct Bench {
     pub until: fn(u64) -> Until,
     /// Number of steps or events that take about a second, by number of particles.
     pub amount: fn(u64) -> u64,
+    /// Fewest steps or events before the first repeat: a start on a lattice costs less than a gas. 1 if work does not depend on the state.
+    pub least_warm_up: u64,
     /// Values of options that are not given.
     pub defaults: &'static [(&'static str, &'static str)],
     /// Choices with a short name, each with the overrides of a value.
@@ -126,6 +128,13 @@ pub struct Bench {
     pub compared: &'static [&'static str],
     /// Quantities reported at the end.
     pub at_end: &'static [&'static str],
+}
+
+impl Bench {
+    /// Steps or events before the first of the repeats with `amount` each: a tenth of a repeat warms up the processor.
+    pub fn warm_up(&self, amount: u64) -> u64 {
+        self.least_warm_up.max(amount / 10)
+    }
 }
 
 /// Option of a benchmark: a short name for a part of its scene.

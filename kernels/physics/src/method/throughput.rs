@@ -20,8 +20,6 @@ pub struct ThroughputRequest {
     pub bench: &'static Bench,
     /// The scene.
     pub prepared: Prepared,
-    /// Steps or events before timing starts; a start on a lattice costs less than a gas.
-    pub equilibration: u64,
     /// Steps or events of each repeat.
     pub steps: u64,
     /// Repeats.
@@ -120,8 +118,8 @@ pub fn throughput(
     measurement: ThroughputRequest,
     progress: impl Fn(f64),
 ) -> Result<Throughput, MeasurementError> {
-    let ThroughputRequest { bench, prepared, equilibration, steps, repeats } = measurement;
-    let mut running = ThroughputRun::begin(bench, prepared, equilibration, steps)?;
+    let ThroughputRequest { bench, prepared, steps, repeats } = measurement;
+    let mut running = ThroughputRun::begin(bench, prepared, steps)?;
     for repeat in 0..repeats {
         // Preparation takes about as long as a tenth of a repeat.
         progress((0.1 + repeat as f64) / (0.1 + repeats as f64));
@@ -155,16 +153,11 @@ pub struct ThroughputRun {
 }
 
 impl ThroughputRun {
-    /// Starts the scene and runs it for `equilibration` steps or events. Repeats have `steps`.
+    /// Starts the scene and warms it up. Repeats have `steps` steps or events.
     ///
     /// # Errors
     /// [`MeasurementError`] if the scene is invalid or fails while running.
-    pub fn begin(
-        bench: &'static Bench,
-        prepared: Prepared,
-        equilibration: u64,
-        steps: u64,
-    ) -> Result<Self, MeasurementError> {
+    pub fn begin(bench: &'static Bench, prepared: Prepared, steps: u64) -> Result<Self, MeasurementError> {
         prepared.memory.clone().for_crew(ranks::current_backend()).fits(bench.name)?;
         let (particles, settings) = (prepared.particles().grain_count(), prepared.settings.clone());
         let begun = Instant::now();
@@ -190,7 +183,7 @@ impl ThroughputRun {
             at_end,
             repeats,
         };
-        running.advance(equilibration)?;
+        running.advance(bench.warm_up(steps))?;
         running.before = running.simulation.row();
         running.simulation.check_ranks()?;
         Ok(running)

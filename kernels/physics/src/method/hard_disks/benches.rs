@@ -12,6 +12,7 @@ pub(crate) const BENCHES: &[Bench] = &[Bench {
     rate: "collisions_per_second",
     until: Until::Events,
     amount: |_| 2_000_000,
+    least_warm_up: 200,
     defaults: &[("particles", "2500"), ("packing-fraction", "0.50")],
     options: bench_options! {
         "particles" [], |count| vec![format!("particles.count={count}")];

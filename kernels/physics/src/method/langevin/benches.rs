@@ -14,6 +14,7 @@ pub(super) const BENCHES: &[Bench] = &[Bench {
     rate: "particle_steps_per_second",
     until: Until::Steps,
     amount: |particles| (40_000_000 / particles.max(1)).clamp(20, 20_000),
+    least_warm_up: 200,
     defaults: &[("particles", "40000")],
     options: bench_options! {
         // LAN17's density: 4 particles per unit of area.

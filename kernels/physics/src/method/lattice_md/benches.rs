@@ -30,6 +30,7 @@ const GRANULAR: Bench = Bench {
     until: Until::Steps,
     // About 10⁷ particle-steps a second, to the order of magnitude.
     amount: |particles| (10_000_000 / particles.max(1)).clamp(20, 20_000),
+    least_warm_up: 200,
     defaults: &[("particles", "10000"), ("packing-fraction", "0.84"), ("integrator", "gear5")],
     options: OPTIONS,
     overrides: &[],
