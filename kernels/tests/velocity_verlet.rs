@@ -87,9 +87,11 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
     for (freedom, row) in state.iter().enumerate() {
         let inverse = INERTIA.inverse(freedom, |value| value, || f64::NAN);
         let gravity = gravity.get(freedom).copied().unwrap_or(0.0);
-        for disc in 0..discs {
-            (0..2).for_each(|k| records.set(RecordEntry::of(freedom, k), disc, row[k][disc]));
-            sums.set(freedom, disc, (row[2][disc] - gravity) / inverse);
+        for (k, column) in row[..2].iter().enumerate() {
+            records.fill(RecordEntry::of(freedom, k), |disc| column.get(disc).copied().unwrap_or(0.0));
+        }
+        for (disc, acceleration) in row[2].iter().enumerate() {
+            sums.set(freedom, disc, (acceleration - gravity) / inverse);
         }
     }
     let entry =

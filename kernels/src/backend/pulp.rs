@@ -200,9 +200,9 @@ macro_rules! pulp_element {
                 }
                 bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
             }
-            // SAFETY: of all of these functions, the caller makes the promise.
             #[inline(always)]
             unsafe fn load_blocks<S: Simd>(simd: S, places: RecordPlaces<'_, $ty>) -> [S::$register; QUAD] {
+                // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
                     on_native!(
                         simd,
@@ -214,6 +214,7 @@ macro_rules! pulp_element {
             }
             #[inline(always)]
             unsafe fn load_block_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
+                // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
                     on_native!(simd, $run_v4 | $run_v3, |set, load| as_registers(load(set, first)), {
                         let (numbers, first) = (block::<$ty>(), first.cast_mut());
@@ -224,6 +225,7 @@ macro_rules! pulp_element {
             }
             #[inline(always)]
             unsafe fn store_block_run<S: Simd>(simd: S, values: [S::$register; QUAD], first: *mut $ty) {
+                // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
                     on_native!(
                         simd,
@@ -239,6 +241,7 @@ macro_rules! pulp_element {
             }
             #[inline(always)]
             unsafe fn load_quad_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
+                // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
                     on_native!(simd, $quads_v4 | $quads_v3, |set, load| as_registers(load(set, first)), {
                         let run = RecordPlaces::run(first.cast_mut(), QUAD);
@@ -253,6 +256,7 @@ macro_rules! pulp_element {
                 [added, subtracted]: [[S::$register; QUAD]; 2],
                 quads: [RecordPlaces<'_, $ty>; 2],
             ) {
+                // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
                     on_native!(
                         simd,

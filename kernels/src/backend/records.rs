@@ -139,11 +139,11 @@ pub(super) unsafe fn add_by_number<R: Registers>(
         // SAFETY: the caller promises four numbers for both.
         unsafe {
             let (own, partner) = (own.at(lane), partner.at(lane));
-            for k in 0..QUAD {
-                *own.add(k) = *own.add(k) + added[k][lane];
+            for (k, column) in added.iter().enumerate() {
+                *own.add(k) = *own.add(k) + column[lane];
             }
-            for k in 0..QUAD {
-                *partner.add(k) = *partner.add(k) - subtracted[k][lane];
+            for (k, column) in subtracted.iter().enumerate() {
+                *partner.add(k) = *partner.add(k) - column[lane];
             }
         }
     }

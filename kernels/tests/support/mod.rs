@@ -330,8 +330,8 @@ impl<S: Precision, P: Precision> System<S, P> {
             let value = |disc: usize| order.get(disc).map_or(sentinel, |&number| column(number as usize));
             records.fill(entry, |disc| S::from_f64(value(disc)));
         };
-        for axis in 0..2 {
-            fill(RecordEntry::of(axis, 0), &|disc| places[axis][disc].to_f64(), 0.0);
+        for (axis, along) in places.iter().enumerate() {
+            fill(RecordEntry::of(axis, 0), &|disc| along[disc].to_f64(), 0.0);
             fill(RecordEntry::of(axis, 1), &|disc| self.velocity[axis][disc].to_f64(), 1.0);
         }
         fill(RecordEntry::Omega, &|disc| self.velocity[2][disc].to_f64(), 1.0);

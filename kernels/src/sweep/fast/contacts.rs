@@ -195,10 +195,10 @@ unsafe fn load_converted<R: Registers, S: Element>(
     }
     let mut columns = [[R::Lane::default(); GROUP]; QUAD];
     for lane in 0..R::LANES {
-        for k in 0..block::<S>() {
+        for (k, column) in columns.iter_mut().enumerate().take(block::<S>()) {
             // SAFETY: the caller promises a block there.
             let number = unsafe { *first.add(records[lane] as usize * stride + k) };
-            columns[k][lane] = R::Lane::from_f64(number.to_f64());
+            column[lane] = R::Lane::from_f64(number.to_f64());
         }
     }
     let [x, y, u, v] = &columns;

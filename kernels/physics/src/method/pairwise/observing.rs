@@ -35,13 +35,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             let (system, state, discs) = (&self.system, &self.state, self.state.len());
             let vary = system.inertia == Inertia::Varying;
             let mut records = StateRecords::zeros(0, discs, [system.freedoms == 3, vary], 1.0);
-            let mut moved = [0.0; 2];
+            let mut squares = 0.0;
             for freedom in 0..system.freedoms {
                 let [values, rates] = self.corrected_column(freedom);
                 if freedom < 2 {
                     let along = |disc: usize| state.place(disc)[freedom];
                     let changes = values.iter().enumerate().map(|(disc, now)| (now - along(disc)).abs());
-                    moved[freedom] = changes.fold(0.0, f64::max);
+                    squares += changes.fold(0.0, f64::max).powi(2);
                 }
                 for (k, column) in [values, rates].iter().enumerate() {
                     // The sentinels are at rest.
@@ -65,7 +65,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
                     },
                 );
             }
-            CorrectedDiscs { records, moved: moved[0].hypot(moved[1]) }
+            CorrectedDiscs { records, moved: squares.sqrt() }
         })
     }
 
