@@ -1,7 +1,10 @@
-//! Blocks and quads: loaded, stored and added in every register file as number by number, to the bit.
+//! Blocks and quads: loaded, stored and added in every register file as number by number, to the bit. Pairs of 16-bit coordinates:
+//! compared as integers of 64 bits.
 
+use rand::RngExt;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::{Precision, RecordPlaces, RegisterTask, Registers, dispatch_native};
+use stripmine_kernels::noise::{RandomPurpose, Stream};
 
 /// Largest number of lanes.
 const LANES: usize = 16;
@@ -86,5 +89,61 @@ fn records_equal_single_numbers() {
     for set in InstructionSet::available() {
         dispatch_native(set, &Quads::<f64>::new()).unwrap();
         dispatch_native(set, &Quads::<f32>::new()).unwrap();
+    }
+}
+
+/// Coordinates of a pair.
+fn coordinates(pair: u32) -> [i64; 2] {
+    [(pair as u16).cast_signed().into(), ((pair >> 16) as u16).cast_signed().into()]
+}
+
+/// Pairs of coordinates, and reaches of the same cells.
+struct Cells {
+    pairs: [u32; 2 * LANES],
+    reaches: [u32; 2 * LANES],
+    offset: u32,
+    limit: i32,
+}
+
+impl RegisterTask<f32> for &Cells {
+    fn on<R: Registers<Lane = f32>>(self, registers: R) {
+        let Cells { pairs, reaches, offset, limit } = self;
+        for first in 0..=LANES {
+            let (own, other) = (pairs.as_ptr(), pairs[first..].as_ptr());
+            let of_reaches = [reaches.as_ptr(), reaches[first..].as_ptr()];
+            // SAFETY: LANES or more pairs and reaches follow in all of these places.
+            let [near, touching] = unsafe {
+                [
+                    registers.near_pairs(own, *offset, other, *limit),
+                    registers.touching_pairs([own, of_reaches[0]], *offset, [other, of_reaches[1]]),
+                ]
+            };
+            for lane in 0..R::LANES {
+                let [[x, y], [a, b], [dx, dy]] = [pairs[lane], pairs[first + lane], *offset].map(coordinates);
+                let square = (x - dx - a).pow(2) + (y - dy - b).pow(2);
+                let reach = i64::from(reaches[lane]) + i64::from(reaches[first + lane]);
+                assert_eq!(near >> lane & 1 == 1, square < i64::from(*limit), "{first} {lane}");
+                assert_eq!(touching >> lane & 1 == 1, square < reach * reach, "{first} {lane}");
+            }
+            assert!((near | touching) >> R::LANES == 0);
+        }
+    }
+}
+
+#[test]
+fn coordinates_are_compared_as_integers() {
+    let mut random = Stream::new(5, RandomPurpose::Test, 0);
+    for _ in 0..200 {
+        let mut pair = |most: i16| {
+            let [x, y] = [0, 1].map(|_| random.random_range(-most..=most));
+            u32::from(x.cast_unsigned()) | u32::from(y.cast_unsigned()) << 16
+        };
+        let pairs = std::array::from_fn(|_| pair(5000));
+        let offset = pair(6000);
+        let reaches = std::array::from_fn(|_| random.random_range(0..5000));
+        let cells = Cells { pairs, reaches, offset, limit: 8195 * 8195 };
+        for set in InstructionSet::available() {
+            dispatch_native(set, &cells).unwrap();
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Machines that a kernel runs on: register files (scalar, `pulp`, `wide`) and the tape.
 
+mod coordinates;
 mod dispatch;
 mod estimated;
 mod precision;
@@ -11,6 +12,7 @@ pub mod tape;
 mod values;
 mod wide;
 
+pub(crate) use coordinates::coordinate_pair;
 pub(crate) use dispatch::dispatch_estimating;
 pub(crate) use dispatch::{GROUP, dispatch};
 pub use dispatch::{InstructionSet, RegisterTask, dispatch_best, dispatch_native};

@@ -1,7 +1,6 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, from the crate `pulp`.
 
-#[cfg(target_arch = "x86_64")]
-use super::records::native;
+use super::coordinates;
 use super::records::{self, QUAD, RecordPlaces, block};
 use super::registers::{IndexLanes, Registers};
 use super::values::{implement_operator, implement_predicate, implement_vector};
@@ -41,6 +40,29 @@ pub trait PulpElement: Element {
     fn none<S: Simd>(simd: S, a: Self::P<S>) -> bool;
     #[doc(hidden)]
     fn bits<S: Simd>(simd: S, a: Self::P<S>) -> u64;
+    /// As [`Registers::near_pairs`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn near_pairs<S: Simd>(
+        simd: S,
+        own: *const u32,
+        offset: u32,
+        other: *const u32,
+        limit: i32,
+    ) -> u64;
+    /// As [`Registers::touching_pairs`].
+    ///
+    /// # Safety
+    /// As there.
+    #[doc(hidden)]
+    unsafe fn touching_pairs<S: Simd>(
+        simd: S,
+        own: [*const u32; 2],
+        offset: u32,
+        other: [*const u32; 2],
+    ) -> u64;
     /// As [`Registers::load_blocks`].
     ///
     /// # Safety
@@ -76,6 +98,13 @@ pub trait PulpElement: Element {
         values: [[Self::V<S>; QUAD]; 2],
         quads: [RecordPlaces<'_, Self>; 2],
     );
+}
+
+/// Functions of AVX2 and AVX-512.
+#[cfg(target_arch = "x86_64")]
+mod native {
+    pub(super) use super::super::coordinates::native::*;
+    pub(super) use super::super::records::native::*;
 }
 
 /// Calls the function of this instruction set on x86-64, or else evaluates the last expression.
@@ -199,6 +228,55 @@ macro_rules! pulp_element {
                     }
                 }
                 bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
+            }
+            #[cfg_attr(
+                not(target_arch = "x86_64"),
+                expect(unused_variables, reason = "x86-64 has faster instructions")
+            )]
+            #[inline(always)]
+            unsafe fn near_pairs<S: Simd>(
+                simd: S,
+                own: *const u32,
+                offset: u32,
+                other: *const u32,
+                limit: i32,
+            ) -> u64 {
+                // SAFETY: the caller makes the promise of the functions called; lanes of single precision are as wide as pairs.
+                unsafe {
+                    if size_of::<$ty>() == size_of::<u32>() {
+                        return on_native!(
+                            simd,
+                            near_pairs_v4 | near_pairs_v3,
+                            |set, near| near(set, own, offset, other, limit),
+                            coordinates::near_pairs::<Pulp<S, $ty>>(own, offset, other, limit)
+                        );
+                    }
+                    coordinates::near_pairs::<Pulp<S, $ty>>(own, offset, other, limit)
+                }
+            }
+            #[cfg_attr(
+                not(target_arch = "x86_64"),
+                expect(unused_variables, reason = "x86-64 has faster instructions")
+            )]
+            #[inline(always)]
+            unsafe fn touching_pairs<S: Simd>(
+                simd: S,
+                own: [*const u32; 2],
+                offset: u32,
+                other: [*const u32; 2],
+            ) -> u64 {
+                // SAFETY: the caller makes the promise of the functions called; lanes of single precision are as wide as pairs.
+                unsafe {
+                    if size_of::<$ty>() == size_of::<u32>() {
+                        return on_native!(
+                            simd,
+                            touching_pairs_v4 | touching_pairs_v3,
+                            |set, touching| touching(set, own, offset, other),
+                            coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other)
+                        );
+                    }
+                    coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other)
+                }
             }
             #[inline(always)]
             unsafe fn load_blocks<S: Simd>(simd: S, places: RecordPlaces<'_, $ty>) -> [S::$register; QUAD] {
@@ -399,6 +477,16 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     #[inline(always)]
     fn bits(self, predicate: PulpPredicate<S, T>) -> u64 {
         <T as PulpElement>::bits(self.simd, predicate.1)
+    }
+    #[inline(always)]
+    unsafe fn near_pairs(self, own: *const u32, offset: u32, other: *const u32, limit: i32) -> u64 {
+        // SAFETY: the caller makes the same promise.
+        unsafe { T::near_pairs(self.simd, own, offset, other, limit) }
+    }
+    #[inline(always)]
+    unsafe fn touching_pairs(self, own: [*const u32; 2], offset: u32, other: [*const u32; 2]) -> u64 {
+        // SAFETY: the caller makes the same promise.
+        unsafe { T::touching_pairs(self.simd, own, offset, other) }
     }
     #[inline(always)]
     unsafe fn load_blocks(self, places: RecordPlaces<'_, T>) -> [Self::V; QUAD] {

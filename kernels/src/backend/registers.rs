@@ -1,5 +1,6 @@
 //! Machine over registers: one implementation of every instruction for any register file.
 
+use super::coordinates;
 use super::records::{self, QUAD, RecordPlaces, block};
 use crate::isa::list::for_each_op;
 use crate::isa::{
@@ -71,6 +72,26 @@ pub trait Registers: Copy + 'static {
     /// Truth values as bits, lane 0 lowest.
     fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
 
+    /// Bits of the lanes in which two [pairs of coordinates](super::coordinates) are nearer than the root of `limit`, after the offset
+    /// is subtracted from the first.
+    ///
+    /// # Safety
+    /// `own` and `other` point to `LANES` initialised pairs; nothing writes them during the call.
+    #[inline(always)]
+    unsafe fn near_pairs(self, own: *const u32, offset: u32, other: *const u32, limit: i32) -> u64 {
+        // SAFETY: the caller makes the same promise.
+        unsafe { coordinates::near_pairs::<Self>(own, offset, other, limit) }
+    }
+    /// As [`near_pairs`](Self::near_pairs), nearer than the sum of the reaches of both. Each side has pairs and reaches, which are pairs
+    /// with a second coordinate of 0.
+    ///
+    /// # Safety
+    /// All point to `LANES` initialised pairs; nothing writes them during the call.
+    #[inline(always)]
+    unsafe fn touching_pairs(self, own: [*const u32; 2], offset: u32, other: [*const u32; 2]) -> u64 {
+        // SAFETY: the caller makes the same promise.
+        unsafe { coordinates::touching_pairs::<Self>(own, offset, other) }
+    }
     /// Loads a block of 16 bytes for each lane: register k holds the number k of every lane, or zero if a block has fewer.
     ///
     /// # Safety

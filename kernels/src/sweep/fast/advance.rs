@@ -13,7 +13,7 @@
 //! - compares each disc's position with its limit, at which the search must be updated: the edge of its cell, or half the skin of
 //!   a list. Few discs exceed it; their numbers are collected from the bits of one comparison per register;
 //! - compares the length of the disc's next step with its limit, so that no disc jumps past another undetected;
-//! - copies the position in single precision to the disc's cell, for a search on the lattice. Each disc writes to a cell of its
+//! - copies the position as a pair of 16-bit coordinates to the disc's cell, for a search on the lattice. Each disc writes to a cell of its
 //!   own, so threads need no order. (Discs in a shared cell write to one spare element behind the lattice, atomically; it is
 //!   never read.)
 //!
@@ -85,7 +85,7 @@ impl PassReport {
     }
 }
 
-/// Single-precision copies of the positions for a search, written together with the state while it is in registers.
+/// Copies of the positions for a search, pairs of 16-bit coordinates, written together with the state while it is in registers.
 ///
 /// Only the lattice creates them. Every cell is an index into `positions` and belongs to one disc or to none.
 #[derive(Debug)]
@@ -93,7 +93,7 @@ pub struct PositionCopies<'a> {
     /// Index of each disc's copy.
     pub(super) cells: &'a [u32],
     /// The copies.
-    pub(super) positions: [&'a mut [f32]; 2],
+    pub(super) positions: &'a mut [u32],
     /// Factor from lengths to the unit of the copies.
     pub(super) unit: f64,
 }
@@ -226,11 +226,8 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.as_mut_ptr());
         }
         let copies_positions = copies.is_some();
-        let mut none = [[]; 2];
-        let PositionCopies { cells, positions, unit } = copies.unwrap_or_else(|| {
-            let [x, y] = &mut none;
-            PositionCopies { cells: &[], positions: [x, y], unit: 1.0 }
-        });
+        let PositionCopies { cells, positions, unit } =
+            copies.unwrap_or(PositionCopies { cells: &[], positions: &mut [], unit: 1.0 });
         assert!(!copies_positions || cells.len() >= end, "cells has no entry for some moving disc");
         let arrays = PassPointers {
             records: self.records.blocks_mut(),
@@ -242,7 +239,7 @@ impl<S: Precision, P: Element, C: Scheme> Advance<'_, S, P, C> {
             limit,
             cells: cells.as_ptr(),
             copies_positions,
-            positions: positions.map(<[f32]>::as_mut_ptr),
+            positions: positions.as_mut_ptr(),
         };
         // Velocity in the units of the state at which a step has the greatest length allowed.
         let fastest = longest_step * (C::scales(motion.dt)[1] / motion.dt);
@@ -283,7 +280,7 @@ struct PassPointers<'a, S, P> {
     cells: *const u32,
     /// True if positions are copied to the lattice.
     copies_positions: bool,
-    positions: [*mut f32; 2],
+    positions: *mut u32,
 }
 
 // SAFETY: passes over disjoint ranges touch different discs, and these have different cells. Discs in shared cells have a common
@@ -437,27 +434,32 @@ impl<S: Precision, P: Element, C: Scheme, const FREEDOMS: usize> Pass<'_, S, P, 
             return;
         }
         // Copied before the atomic stores, which might otherwise change them.
-        let (cells, copies, unit) = (arrays.cells, arrays.positions, uniform(self.unit));
+        let (cells, copies) = (arrays.cells, arrays.positions);
+        let mut along = [[S::default(); 16]; 2];
         for axis in 0..2 {
-            let mut along = [S::default(); 16];
+            let rounded = position[axis] * uniform(self.unit) + uniform(const { rounding::<S>() });
             // SAFETY: `along` has 16 entries, and no register has more lanes.
-            unsafe { registers.store(along.as_mut_ptr(), position[axis] * unit) };
-            // Converts all lanes first, so that the compiler vectorises the conversion.
-            let mut narrow = [0.0_f32; 16];
-            for lane in 0..16 {
-                narrow[lane] = along[lane].to_f64() as f32;
-            }
-            for lane in 0..R::LANES {
-                // SAFETY: the cells are cells of the lattice, each of one disc only. The exception is the spare cell behind it,
-                // which discs in shared cells have in common: only these stores touch it. They are atomic and compile to plain
-                // ones.
-                unsafe {
-                    let position = copies[axis].add(*cells.add(first + lane) as usize);
-                    AtomicU32::from_ptr(position.cast()).store(narrow[lane].to_bits(), Ordering::Relaxed);
-                }
+            unsafe { registers.store(along[axis].as_mut_ptr(), rounded) };
+        }
+        // All lanes first, so that the compiler vectorises the conversion.
+        let mut pairs = [0; 16];
+        for lane in 0..16 {
+            pairs[lane] = along[0][lane].bits() as u32 & 0xffff | (along[1][lane].bits() as u32) << 16;
+        }
+        for lane in 0..R::LANES {
+            // SAFETY: the cells are cells of the lattice, each of one disc only. The exception is the spare cell behind it, which
+            // discs in shared cells have in common: only these stores touch it. They are atomic and compile to plain ones.
+            unsafe {
+                let position = copies.add(*cells.add(first + lane) as usize);
+                AtomicU32::from_ptr(position).store(pairs[lane], Ordering::Relaxed);
             }
         }
     }
+}
+
+/// Number that rounds a small number to an integer when it is added: the low 16 bits of the sum are those of the integer.
+const fn rounding<S: Element>() -> f64 {
+    if S::BYTES == 8 { 1.5 * (1_u64 << 52) as f64 } else { 1.5 * (1_u64 << 23) as f64 }
 }
 
 /// Lists the discs of a register from `first` on whose bits are set.

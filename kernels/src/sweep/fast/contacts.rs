@@ -300,10 +300,12 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
     #[inline(always)]
     fn on<R: Registers<Lane = P>>(self, registers: R) {
         const { assert!(R::LANES <= GROUP) }
+        // Not behind a reference: parameters of the law then stay in registers, since no store to a sum can change them.
+        let law = self.law.clone();
         let mut notes = std::mem::take(self.notes);
         let mut first = 0;
         while first < self.pairs.count() {
-            self.evaluate_register::<R>(registers, first, &mut notes);
+            self.evaluate_register::<R>(registers, &law, first, &mut notes);
             first += R::LANES;
         }
         *self.notes = notes;
@@ -312,7 +314,13 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
 
 impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P, L, Q> {
     #[inline(always)]
-    fn evaluate_register<R: Registers<Lane = P>>(&self, registers: R, first: usize, notes: &mut BandNotes) {
+    fn evaluate_register<R: Registers<Lane = P>>(
+        &self,
+        registers: R,
+        law: &L,
+        first: usize,
+        notes: &mut BandNotes,
+    ) {
         let count = (self.pairs.count() - first).min(R::LANES);
         let mut own = [self.sentinel; GROUP];
         let mut partner = [self.sentinel + 1; GROUP];
@@ -353,9 +361,9 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P,
             partner_sums: [zero(), zero(), zero()],
         };
         // Only through `StatedEnv`: a law has the entries that it states, and no others.
-        let env = StatedEnv::new(&gathered, self.law);
-        let disc = self.law.own(env);
-        self.law.pair(env, (), &disc);
+        let env = StatedEnv::new(&gathered, law);
+        let disc = law.own(env);
+        law.pair(env, (), &disc);
 
         let [x, y, torque] = &gathered.own_sums;
         let (x, y, torque) = (x.get(), y.get(), torque.get());

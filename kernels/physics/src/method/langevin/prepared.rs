@@ -121,7 +121,7 @@ impl CheckedLangevin {
             }
             ChosenSearch::Lattice(shape, _) => {
                 // A number and a bit per cell; copies of the positions if the lattice is not sparse.
-                let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 2.0 };
+                let copies = if count < SPARSE * shape.cells() as f64 { 0.0 } else { 1.0 };
                 let cells = shape.padded() as f64;
                 (139.0 * count, (1.0 + copies) * row(4.0 * cells) + 0.125 * cells)
             }

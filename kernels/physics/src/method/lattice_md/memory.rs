@@ -188,7 +188,7 @@ impl GranularSizes {
             let shape = &self.model.shape;
             let padded = shape.padded() as f64;
             let sparse = self.discs < SPARSE * shape.cells() as f64;
-            let copies = if sparse { 0.0 } else { 2.0 + f64::from(u8::from(self.vary)) };
+            let copies = if sparse { 0.0 } else { 1.0 + f64::from(u8::from(self.vary)) };
             return (1.0 + copies) * row(4.0 * padded) + 0.125 * padded;
         }
         let [columns, rows] = [0, 1].map(|axis| (self.sides[axis] / self.widest_cell[axis]).ceil());

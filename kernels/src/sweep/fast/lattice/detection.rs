@@ -4,8 +4,8 @@
 //! ```text
 //! for every group of 16 cells of a row that has a disc:
 //!     for every offset of the half mask:
-//!         dx = x[group] - x[group at the offset] - cell offset,  dy likewise       a register of cells at a time
-//!         16 bits: dx² + dy² < 1                                           in units of the largest contact distance;
+//!         d = position[group] - cell offset - position[group at the offset]    a register of cells at a time, x and y in one word
+//!         16 bits: dx² + dy² < (1 + margin)²                               in units of the largest contact distance;
 //!                                                                          (r_i + r_j)² instead of 1 where radii vary
 //!     and these bits with those of the occupied cells                      four offsets share a word of 64 bits
 //!     append a candidate for every remaining bit
@@ -14,22 +14,19 @@
 //! Reasons for its speed:
 //!
 //! - *Shifts, not gathers.* Cells of a row are stored side by side, so all partners at an offset are one load.
-//! - *Single precision.* Positions inside cells are copied in single precision ([`Advance`](crate::sweep::fast::Advance)), which
-//!   doubles the number of lanes. A margin of 2·10⁻⁵ covers the rounding, so no contact is missed; the law decides in full
-//!   precision.
+//! - *16-bit coordinates.* Positions inside cells are copied as pairs of integers ([`Advance`](crate::sweep::fast::Advance)): two
+//!   subtractions, one multiplication with addition and one comparison for 16 cells. A margin of 4·10⁻⁴ covers the rounding, so no
+//!   contact is missed and 1 % of the candidates are none; the law decides in full precision.
 //! - *No test whether the partner's cell is occupied.* The x of an empty cell is so far away that nothing is near it.
-//! - *The cell offset is applied to the own side.* The own position relative to the surrounding columns and rows is computed once
-//!   a register.
 //! - *Bits, not branches.* Results stay bits until the end. Candidates are appended four at a time, even if there are fewer,
 //!   because their number cannot be predicted.
 
 use super::codes::{PackedCandidate, half_mask_offset, offset_count};
-use super::occupancy::Occupancy;
+use super::occupancy::{Occupancy, REACH, ROUNDING};
 use crate::GROUP;
 use crate::backend::RegisterTask;
 use crate::backend::Registers;
-use crate::isa::Vector;
-use crate::sweep::fast::finder::{MARGIN, SearchCursor};
+use crate::sweep::fast::finder::SearchCursor;
 use std::ops::Range;
 
 /// Offsets of the mask whose results share a word: 16 cells each.
@@ -38,8 +35,8 @@ const OFFSETS: usize = 64 / GROUP;
 /// Searches groups of cells from `cursor` to the end of the rows, until `full` candidates are found.
 pub(super) struct DenseSearch<'a> {
     pub(super) occupancy: &'a Occupancy,
-    /// Factor on the square of the contact distance, in addition to the margin.
-    pub(super) beyond: f64,
+    /// Fraction of the contact distance by which a pair may be farther apart, in addition to the margin.
+    pub(super) slack: f64,
     pub(super) rows: Range<usize>,
     pub(super) cursor: &'a mut SearchCursor,
     pub(super) full: usize,
@@ -67,18 +64,22 @@ const fn word_count(half_width: usize) -> usize {
 impl DenseSearch<'_> {
     #[inline(always)]
     fn with<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(self, registers: R) {
-        let DenseSearch { occupancy, beyond, rows, cursor, full, found } = self;
-        let limit = registers.splat((MARGIN * beyond) as f32);
+        let DenseSearch { occupancy, slack, rows, cursor, full, found } = self;
+        let beyond = (REACH * slack + ROUNDING).ceil();
+        let limit = ((REACH + beyond).powi(2) as i32).min(FARTHEST);
         let shape = occupancy.shape();
         let stride = shape.stride();
-        let [x, y] = occupancy.positions();
-        let radii = if VARY { occupancy.radii().unwrap_or(&[]) } else { x };
+        let positions = occupancy.positions();
+        // A pair is found within the sum of two reaches: the radii, and half of what is beyond.
+        let radii = if VARY { occupancy.radii().unwrap_or(&[]) } else { positions };
         let occupied = occupancy.occupied();
         let groups = shape.columns().div_ceil(GROUP);
         let end = (rows.end - 1 + H) * stride + shape.position(0, 0) + shape.columns() + GROUP + H;
-        assert!(rows.end <= shape.rows() && end <= x.len() && x.len() == y.len() && x.len() == radii.len());
+        assert!(rows.end <= shape.rows() && end <= positions.len() && positions.len() == radii.len());
         assert!(end < occupied.positions());
-        let (x, y, radii) = (x.as_ptr(), y.as_ptr(), radii.as_ptr());
+        let (positions, radii) = (positions.as_ptr(), radii.as_ptr());
+        let offsets: [u32; MOST] =
+            std::array::from_fn(|number| occupancy.offset_pair(half_mask_offset(H, number)));
         while cursor.row < rows.end {
             while cursor.along < groups {
                 let column = cursor.along * GROUP;
@@ -93,14 +94,8 @@ impl DenseSearch<'_> {
                     // SAFETY: the group's cells and those at its offsets, up to H columns and rows on, are before `end`, and all
                     // columns have as many entries (asserted above).
                     let near = unsafe {
-                        compare::<R, H, VARY>(
-                            registers,
-                            [x.add(base), y.add(base)],
-                            radii.add(base),
-                            stride,
-                            occupancy.edge(),
-                            limit,
-                        )
+                        let own = [positions.add(base), radii.add(base)];
+                        compare::<R, H, VARY>(registers, own, stride, &offsets, limit)
                     };
                     for (word, near) in near.into_iter().take(const { word_count(H) }).enumerate() {
                         let own = own * 0x0001_0001_0001_0001;
@@ -118,53 +113,45 @@ impl DenseSearch<'_> {
     }
 }
 
+/// Offsets of the half mask of the widest mask.
+const MOST: usize = offset_count(3);
+
+/// Largest limit of a square: that of an empty cell is above it.
+const FARTHEST: i32 = 1 << 29;
+
 /// Finds the discs of a group that are near the disc at each offset: 16 bits per offset.
 ///
 /// # Safety
-/// The pointers are to the own cells of a group, and every cell of it exists at every offset.
+/// The pointers are to the own cells of a group, positions and reaches, and every cell of it exists at every offset.
 #[inline(always)]
 unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     registers: R,
-    [x, y]: [*const f32; 2],
-    radii: *const f32,
+    [positions, radii]: [*const u32; 2],
     stride: usize,
-    edge: [f32; 2],
-    limit: R::V,
+    offsets: &[u32; MOST],
+    limit: i32,
 ) -> [u64; 6] {
     let mut near = [0; 6];
     let mut part = 0;
     while part < GROUP {
-        // SAFETY: part + LANES <= GROUP, and the caller promises the own cells of a group.
-        let (own_x, own_y) = unsafe { (registers.load(x.add(part)), registers.load(y.add(part))) };
-        // SAFETY: part + LANES <= GROUP, and there is a radius for every cell.
-        let own_radius = unsafe { registers.load(radii.add(part)) };
-        // Own position relative to the centres of the surrounding columns and rows.
-        let column = |column: isize| own_x - registers.splat(edge[0] * column as f32);
-        let columns = [column(-3), column(-2), column(-1), own_x, column(1), column(2), column(3)];
-        let row = |row: usize| own_y - registers.splat(edge[1] * row as f32);
-        let rows = [own_y, row(1), row(2), row(3)];
         // Unrolled by hand: if the compiler leaves a loop, the words stay in memory, at five times the cost.
         macro_rules! at_offsets {
             ($($number:literal)*) => {$(
                 if $number < const { offset_count(H) } {
                     let [column, row] = const { half_mask_offset(H, $number) };
                     let shift = row * stride as isize + column + part as isize;
-                    // SAFETY: the caller promises that every cell of the group exists at every offset of the mask.
-                    let (dx, dy) = unsafe {
-                        (
-                            columns[(column + 3) as usize] - registers.load(x.offset(shift)),
-                            rows[row as usize] - registers.load(y.offset(shift)),
-                        )
+                    // SAFETY: part + LANES <= GROUP, and the caller promises that every cell of the group exists at every offset of
+                    // the mask.
+                    let touch = unsafe {
+                        let (own, other) = (positions.add(part), positions.offset(shift));
+                        if VARY {
+                            let reaches = (radii.add(part), radii.offset(shift));
+                            registers.touching_pairs([own, reaches.0], offsets[$number], [other, reaches.1])
+                        } else {
+                            registers.near_pairs(own, offsets[$number], other, limit)
+                        }
                     };
-                    let square = dx * dx + dy * dy;
-                    let touch = if VARY {
-                        // SAFETY: there is a radius for every cell, and these cells exist at every offset of the mask.
-                        let reach = own_radius + unsafe { registers.load(radii.offset(shift)) };
-                        square.less_than(reach * reach * limit)
-                    } else {
-                        square.less_than(limit)
-                    };
-                    near[$number / OFFSETS] |= registers.bits(touch) << (GROUP * ($number % OFFSETS) + part);
+                    near[$number / OFFSETS] |= touch << (GROUP * ($number % OFFSETS) + part);
                 }
             )*};
         }

@@ -97,8 +97,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Lattice<'_, P> {
                 SparseSearch { occupancy, codes, discs, reach, rows, cursor, full: AT_ONCE, found, cells },
             )
         } else {
-            let beyond = (1.0 + slack) * (1.0 + slack);
-            dispatch_native(set, DenseSearch { occupancy, beyond, rows, cursor, full: AT_ONCE, found })
+            dispatch_native(set, DenseSearch { occupancy, slack, rows, cursor, full: AT_ONCE, found })
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::bits::CellBits;
 use crate::GROUP;
+use crate::backend::coordinate_pair;
 use crate::isa::AlignedColumn;
 use crate::sweep::fast::advance::PositionCopies;
 use crate::sweep::fast::grid::CellGrid;
@@ -13,8 +14,15 @@ use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 #[error("disc {0} is already in that cell; a cell holds one disc")]
 pub struct CellTaken(pub usize);
 
-/// The x of an empty cell: its square is finite in single precision, and nothing is near it.
-const FAR: f32 = 1e18;
+/// Coordinates of the largest contact distance. Cells are smaller than that, and no mask is three times as wide.
+pub(super) const REACH: f64 = 8192.0;
+
+/// Coordinates by which a distance may be too large after rounding: half of one for each of two positions and an offset, along both
+/// axes.
+pub(super) const ROUNDING: f64 = 3.0;
+
+/// The position of an empty cell, from which nothing is near.
+const EMPTY: u32 = coordinate_pair(i16::MAX, 0);
 
 /// Alignment numbers of the columns, which place them on cache lines of their own; the discs' columns have smaller numbers.
 const INDEX: usize = 32;
@@ -22,8 +30,8 @@ const RADIUS: usize = 33;
 const POSITION: usize = 34;
 
 /// Positions of empty cells.
-fn empty_positions(cells: usize) -> [AlignedColumn<f32>; 2] {
-    [AlignedColumn::filled(POSITION, FAR, cells), AlignedColumn::zeros(POSITION + 1, cells)]
+fn empty_positions(cells: usize) -> AlignedColumn<u32> {
+    AlignedColumn::filled(POSITION, EMPTY, cells)
 }
 
 /// Fraction of occupied cells below which comparing registers of cells does not pay: then each disc looks for its neighbours
@@ -32,22 +40,23 @@ pub const SPARSE: f64 = 0.15;
 
 /// Assignment of discs to cells. Where the lattice is not sparse, it also stores each disc's position in its cell and its radius.
 ///
-/// These lengths are in units of the largest contact distance and in single precision: good for finding contacts, not for forces.
+/// These lengths are 16-bit integers, in units of 1/8192 of the largest contact distance: good for finding contacts, not for forces.
 /// Every disc is in at most one cell, and every cell has at most one disc.
 #[derive(Clone, Debug)]
 pub struct Occupancy {
     shape: LatticeShape,
     frame: LatticeFrame,
     half_width: usize,
+    /// Coordinates per length.
     unit: f64,
-    /// Distance between neighbouring columns and between neighbouring rows.
-    edge: [f32; 2],
     discs: usize,
     cell: Vec<u32>,
     index: AlignedColumn<u32>,
     sparse: bool,
-    position: [AlignedColumn<f32>; 2],
-    radius: Option<AlignedColumn<f32>>,
+    /// Pairs of coordinates by cell.
+    position: AlignedColumn<u32>,
+    /// Radii by cell, rounded up, as pairs with 0.
+    radius: Option<AlignedColumn<u32>>,
     occupied: CellBits,
     /// Halo cells, each with the cell that it repeats.
     images: Vec<[u32; 2]>,
@@ -65,7 +74,8 @@ impl Occupancy {
     /// the largest such distance.
     ///
     /// # Panics
-    /// If there are 2³² − 3 discs or more, or the mask is neither 5×5 nor 7×7.
+    /// If there are 2³² − 3 discs or more, the mask is neither 5×5 nor 7×7, or a cell is wider than `reach`, so that a partner's cell would
+    /// be farther than 16-bit coordinates go.
     pub fn new(shape: LatticeShape, frame: LatticeFrame, discs: usize, reach: f64, vary: bool) -> Self {
         assert!(
             discs < u32::MAX as usize - SENTINELS,
@@ -76,6 +86,11 @@ impl Occupancy {
             (2..=3).contains(&half_width),
             "no search for a mask of half-width {half_width}: masks of 5×5 and 7×7 cells are supported"
         );
+        assert!(
+            frame.edge.iter().all(|&edge| edge <= reach),
+            "cells of {:?} are wider than the contact distance {reach}",
+            frame.edge
+        );
         // The last register of the last row may extend beyond the padded lattice.
         let length = shape.padded() + GROUP + 1;
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
@@ -83,14 +98,13 @@ impl Occupancy {
         Occupancy {
             frame,
             half_width,
-            unit: 1.0 / reach,
-            edge: frame.edge.map(|edge| (edge / reach) as f32),
+            unit: REACH / reach,
             discs,
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, length),
             sparse,
             position: empty_positions(stored),
-            radius: (vary && !sparse).then(|| AlignedColumn::zeros(RADIUS, length)),
+            radius: (vary && !sparse).then(|| AlignedColumn::filled(RADIUS, 0, length)),
             occupied: CellBits::new(&shape, half_width),
             images: shape
                 .images()
@@ -117,8 +131,8 @@ impl Occupancy {
             discs,
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, self.index.len()),
-            position: empty_positions(self.position[0].len()),
-            radius: self.radius.as_ref().map(|radius| AlignedColumn::zeros(RADIUS, radius.len())),
+            position: empty_positions(self.position.len()),
+            radius: self.radius.as_ref().map(|radius| AlignedColumn::filled(RADIUS, 0, radius.len())),
             occupied: CellBits::new(&self.shape, self.half_width),
             images: self.images.clone(),
             outside: discs,
@@ -202,7 +216,7 @@ impl Occupancy {
         self.outside -= 1;
         self.index[at] = disc as u32;
         if let Some(radii) = &mut self.radius {
-            radii[at] = (radius * self.unit) as f32;
+            radii[at] = coordinate_pair((radius * self.unit + 0.5 * ROUNDING).ceil() as i16, 0);
         }
         self.update_position(disc, position);
         self.occupied.set(at, true);
@@ -247,11 +261,10 @@ impl Occupancy {
         self.cell[disc] = NOWHERE;
         self.index[at] = self.discs as u32;
         if !self.sparse {
-            self.position[0][at] = FAR;
-            self.position[1][at] = 0.0;
+            self.position[at] = EMPTY;
         }
         if let Some(radii) = &mut self.radius {
-            radii[at] = 0.0;
+            radii[at] = 0;
         }
         self.occupied.set(at, false);
     }
@@ -267,9 +280,8 @@ impl Occupancy {
         if self.sparse {
             return;
         }
-        for (column, along) in self.position.iter_mut().zip(position) {
-            column[at] = (along * self.unit) as f32;
-        }
+        let [x, y] = position.map(|along| (along * self.unit).round_ties_even() as i16);
+        self.position[at] = coordinate_pair(x, y);
     }
 
     /// Copies the cells at periodic sides to the halo.
@@ -283,7 +295,7 @@ impl Occupancy {
                 self.occupied.set(cell, (disc as usize) < self.discs);
             }
             if !self.sparse {
-                self.position.iter_mut().for_each(|position| position[cell] = position[source]);
+                self.position[cell] = self.position[source];
             }
             if let Some(radii) = &mut self.radius {
                 radii[cell] = radii[source];
@@ -326,7 +338,7 @@ impl Occupancy {
     /// Largest contact distance (length).
     #[inline]
     pub(super) fn reach(&self) -> f64 {
-        1.0 / self.unit
+        REACH / self.unit
     }
 
     #[inline]
@@ -334,9 +346,12 @@ impl Occupancy {
         self.half_width
     }
 
-    #[inline]
-    pub(super) fn edge(&self) -> [f32; 2] {
-        self.edge
+    /// Pair of coordinates of an offset, in columns and rows.
+    #[inline(always)]
+    pub(super) fn offset_pair(&self, offset: [isize; 2]) -> u32 {
+        let along =
+            |axis: usize| (offset[axis] as f64 * self.frame.edge[axis] * self.unit).round_ties_even() as i16;
+        coordinate_pair(along(0), along(1))
     }
 
     #[inline]
@@ -345,12 +360,12 @@ impl Occupancy {
     }
 
     #[inline]
-    pub(super) fn positions(&self) -> [&[f32]; 2] {
-        [&self.position[0], &self.position[1]]
+    pub(super) fn positions(&self) -> &[u32] {
+        &self.position
     }
 
     #[inline]
-    pub(super) fn radii(&self) -> Option<&[f32]> {
+    pub(super) fn radii(&self) -> Option<&[u32]> {
         self.radius.as_deref()
     }
 
@@ -373,7 +388,7 @@ impl Occupancy {
     #[inline]
     pub fn copies(&mut self) -> Option<PositionCopies<'_>> {
         assert!(self.outside == 0, "{} discs are in no cell", self.outside);
-        let [x, y] = &mut self.position;
-        (!self.sparse).then_some(PositionCopies { cells: &self.cell, positions: [x, y], unit: self.unit })
+        let (cells, unit) = (&self.cell, self.unit);
+        (!self.sparse).then_some(PositionCopies { cells, positions: &mut self.position, unit })
     }
 }
