@@ -19,13 +19,13 @@
 //!
 //! Derivatives that a scheme does not carry from step to step are not stored ([`Scheme::CARRIED`]).
 
+use super::motion::EquationOfMotion;
 use super::records::{ENTRIES, ForceRecords, MOST_BLOCKS, RecordEntry, StateRecords};
 use crate::InstructionSet;
 use crate::backend::{Precision, QUAD, Registers, Scalar, block};
 use crate::backend::{RegisterTask, dispatch_native};
-use crate::integrator::{Context, DERIVATIVES, Draws, Inertia, Scheme, acceleration};
+use crate::integrator::{DERIVATIVES, Draws, Inertia, Scheme, acceleration};
 use crate::isa::{Element, Predicate, ProgramError, Vector, is_same_storage};
-use crate::noise::{self, NoiseSource, RandomPurpose};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -35,21 +35,6 @@ const AT_ONCE: usize = 256;
 
 /// Discs that one thread moves in one piece.
 const BAND: usize = 1024;
-
-/// Equation of motion and its integration: scheme, time step, inertia, gravity, noise.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EquationOfMotion<C> {
-    /// The scheme.
-    pub scheme: C,
-    /// Time step (time).
-    pub dt: f64,
-    /// Divisor of the forces.
-    pub inertia: Inertia,
-    /// Acceleration of gravity (length/time²).
-    pub gravity: [f64; 2],
-    /// Source of random numbers, for a scheme that draws some.
-    pub noise: NoiseSource,
-}
 
 /// Limit of a disc's displacement beyond which the search must be updated.
 #[derive(Clone, Copy, Debug)]
@@ -96,67 +81,6 @@ pub struct PositionCopies<'a> {
     pub(super) positions: &'a mut [u32],
     /// Factor from lengths to the unit of the copies.
     pub(super) unit: f64,
-}
-
-impl<C: Scheme> EquationOfMotion<C> {
-    /// Context of the scheme for one degree of freedom.
-    #[inline(always)]
-    fn context<R: Registers>(&self, registers: R, inverse: R::V, normal: R::V) -> Context<R> {
-        Context { registers, dt: self.dt, inverse, normal }
-    }
-
-    /// Draws the random numbers of some discs along x and y, in the pass that corrects the step numbered `step`.
-    #[inline(always)]
-    fn draw<S: Element>(&self, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
-        let NoiseSource { seed, parts } = self.noise;
-        let first = match C::DRAWS {
-            Draws::Never => return,
-            Draws::InCorrector => step * u64::from(parts),
-            Draws::InPredictor => step * u64::from(parts) + 1,
-        };
-        match parts {
-            1 => noise::draw(seed, RandomPurpose::Thermostat, first, ids, to),
-            _ => self.combine_noise(first, ids, to),
-        }
-    }
-
-    /// Combines the numbers of a step from those of its parts, which are numbered from `first`.
-    #[inline(never)]
-    fn combine_noise<S: Element>(&self, first: u64, ids: &[u32], [across, along]: [&mut [S]; 2]) {
-        let weights = self.scheme.noise_weights(self.noise.parts);
-        for ((id, x), y) in ids.iter().zip(across).zip(along) {
-            let mut sums = [0.0; 2];
-            for (step, weight) in (first..).zip(&weights) {
-                let [mut a, mut b] = [[0.0]; 2];
-                noise::draw(self.noise.seed, RandomPurpose::Thermostat, step, &[*id], [&mut a, &mut b]);
-                sums = [sums[0] + weight * a[0], sums[1] + weight * b[0]];
-            }
-            [*x, *y] = sums.map(S::from_f64);
-        }
-    }
-
-    /// Returns one degree of freedom of the disc `id`, corrected in the step numbered `step`. Inputs are the predicted row (its
-    /// first [`Scheme::CARRIED`] entries), the force and the inverse mass or moment of inertia.
-    #[inline]
-    pub fn corrected<S: Element>(
-        &self,
-        (step, id): (u64, u32),
-        freedom: usize,
-        predicted: [S; DERIVATIVES],
-        force: S,
-        inverse: S,
-    ) -> [S; DERIVATIVES] {
-        let [mut x, mut y] = [[S::from_f64(f64::NAN)]; 2];
-        if C::DRAWS == Draws::InCorrector {
-            self.draw(step, &[id], [&mut x, &mut y]);
-        }
-        let context = self.context(Scalar::<S>::default(), inverse, [x, y, y][freedom][0]);
-        let mut row = predicted;
-        let acceleration =
-            acceleration(|value| context.uniform(value), self.gravity, freedom, force, inverse);
-        self.scheme.correct(&context, &mut row, acceleration);
-        row
-    }
 }
 
 /// Corrects the state with the forces of a sweep and predicts it one step ahead.
