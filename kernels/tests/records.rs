@@ -103,11 +103,12 @@ struct Cells {
     reaches: [u32; 2 * LANES],
     offset: u32,
     limit: i32,
+    beyond: u32,
 }
 
 impl RegisterTask<f32> for &Cells {
     fn on<R: Registers<Lane = f32>>(self, registers: R) {
-        let Cells { pairs, reaches, offset, limit } = self;
+        let Cells { pairs, reaches, offset, limit, beyond } = self;
         for first in 0..=LANES {
             let (own, other) = (pairs.as_ptr(), pairs[first..].as_ptr());
             let of_reaches = [reaches.as_ptr(), reaches[first..].as_ptr()];
@@ -115,13 +116,13 @@ impl RegisterTask<f32> for &Cells {
             let [near, touching] = unsafe {
                 [
                     registers.near_pairs(own, *offset, other, *limit),
-                    registers.touching_pairs([own, of_reaches[0]], *offset, [other, of_reaches[1]]),
+                    registers.touching_pairs([own, of_reaches[0]], *offset, [other, of_reaches[1]], *beyond),
                 ]
             };
             for lane in 0..R::LANES {
                 let [[x, y], [a, b], [dx, dy]] = [pairs[lane], pairs[first + lane], *offset].map(coordinates);
                 let square = (x - dx - a).pow(2) + (y - dy - b).pow(2);
-                let reach = i64::from(reaches[lane]) + i64::from(reaches[first + lane]);
+                let reach = i64::from(reaches[lane] + reaches[first + lane] + beyond);
                 assert_eq!(near >> lane & 1 == 1, square < i64::from(*limit), "{first} {lane}");
                 assert_eq!(touching >> lane & 1 == 1, square < reach * reach, "{first} {lane}");
             }
@@ -141,7 +142,7 @@ fn coordinates_are_compared_as_integers() {
         let pairs = std::array::from_fn(|_| pair(5000));
         let offset = pair(6000);
         let reaches = std::array::from_fn(|_| random.random_range(0..5000));
-        let cells = Cells { pairs, reaches, offset, limit: 8195 * 8195 };
+        let cells = Cells { pairs, reaches, offset, limit: 8195 * 8195, beyond: random.random_range(0..900) };
         for set in InstructionSet::available() {
             dispatch_native(set, &cells).unwrap();
         }

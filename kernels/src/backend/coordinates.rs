@@ -11,10 +11,10 @@ pub(crate) const fn coordinate_pair(x: i16, y: i16) -> u32 {
     x as u16 as u32 | (y as u16 as u32) << 16
 }
 
-/// Square of the sum of two numbers in the low halves, with saturation.
+/// Square of the sum of three numbers in the low halves, with saturation.
 #[inline(always)]
-const fn square_of_sum(a: u32, b: u32) -> i32 {
-    let sum = (a as i16).saturating_add(b as i16) as i32;
+const fn square_of_sum(a: u32, b: u32, c: u32) -> i32 {
+    let sum = (a as i16).saturating_add(b as i16).saturating_add(c as i16) as i32;
     sum * sum
 }
 
@@ -56,6 +56,7 @@ pub(super) unsafe fn touching_pairs<R: Registers>(
     [own, own_reach]: [*const u32; 2],
     offset: u32,
     [other, other_reach]: [*const u32; 2],
+    beyond: u32,
 ) -> u64 {
     let mut bits = 0;
     for lane in 0..R::LANES {
@@ -63,7 +64,7 @@ pub(super) unsafe fn touching_pairs<R: Registers>(
         let (square, limit) = unsafe {
             (
                 square_of_distance(*own.add(lane), offset, *other.add(lane)),
-                square_of_sum(*own_reach.add(lane), *other_reach.add(lane)),
+                square_of_sum(*own_reach.add(lane), *other_reach.add(lane), beyond),
             )
         };
         bits |= u64::from(square < limit) << lane;
@@ -139,13 +140,16 @@ pub(super) mod native {
         [own, own_reach]: [*const u32; 2],
         offset: u32,
         [other, other_reach]: [*const u32; 2],
+        beyond: u32,
     ) -> u64 {
         // SAFETY: the caller promises the pairs, and the token the instructions.
         let (own, other) = unsafe { (_mm512_loadu_si512(own.cast()), _mm512_loadu_si512(other.cast())) };
         // SAFETY: the caller promises the reaches.
         let (own_reach, other_reach) =
             unsafe { (_mm512_loadu_si512(own_reach.cast()), _mm512_loadu_si512(other_reach.cast())) };
-        let reach = v4.avx512bw._mm512_adds_epi16(own_reach, other_reach);
+        let both = v4.avx512bw._mm512_adds_epi16(own_reach, other_reach);
+        let beyond = v4.avx512f._mm512_set1_epi32(beyond.cast_signed());
+        let reach = v4.avx512bw._mm512_adds_epi16(both, beyond);
         let limits = v4.avx512bw._mm512_madd_epi16(reach, reach);
         v4.avx512f._mm512_cmplt_epi32_mask(squares_v4(v4, own, offset, other), limits).into()
     }
@@ -158,13 +162,16 @@ pub(super) mod native {
         [own, own_reach]: [*const u32; 2],
         offset: u32,
         [other, other_reach]: [*const u32; 2],
+        beyond: u32,
     ) -> u64 {
         // SAFETY: the caller promises the pairs, and the token the instructions.
         let (own, other) = unsafe { (_mm256_loadu_si256(own.cast()), _mm256_loadu_si256(other.cast())) };
         // SAFETY: the caller promises the reaches.
         let (own_reach, other_reach) =
             unsafe { (_mm256_loadu_si256(own_reach.cast()), _mm256_loadu_si256(other_reach.cast())) };
-        let reach = v3.avx2._mm256_adds_epi16(own_reach, other_reach);
+        let both = v3.avx2._mm256_adds_epi16(own_reach, other_reach);
+        let beyond = v3.avx._mm256_set1_epi32(beyond.cast_signed());
+        let reach = v3.avx2._mm256_adds_epi16(both, beyond);
         let limits = v3.avx2._mm256_madd_epi16(reach, reach);
         bits_below_v3(v3, squares_v3(v3, own, offset, other), limits)
     }

@@ -62,6 +62,7 @@ pub trait PulpElement: Element {
         own: [*const u32; 2],
         offset: u32,
         other: [*const u32; 2],
+        beyond: u32,
     ) -> u64;
     /// As [`Registers::load_blocks`].
     ///
@@ -264,6 +265,7 @@ macro_rules! pulp_element {
                 own: [*const u32; 2],
                 offset: u32,
                 other: [*const u32; 2],
+                beyond: u32,
             ) -> u64 {
                 // SAFETY: the caller makes the promise of the functions called; lanes of single precision are as wide as pairs.
                 unsafe {
@@ -271,11 +273,11 @@ macro_rules! pulp_element {
                         return on_native!(
                             simd,
                             touching_pairs_v4 | touching_pairs_v3,
-                            |set, touching| touching(set, own, offset, other),
-                            coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other)
+                            |set, touching| touching(set, own, offset, other, beyond),
+                            coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other, beyond)
                         );
                     }
-                    coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other)
+                    coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other, beyond)
                 }
             }
             #[inline(always)]
@@ -484,9 +486,15 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
         unsafe { T::near_pairs(self.simd, own, offset, other, limit) }
     }
     #[inline(always)]
-    unsafe fn touching_pairs(self, own: [*const u32; 2], offset: u32, other: [*const u32; 2]) -> u64 {
+    unsafe fn touching_pairs(
+        self,
+        own: [*const u32; 2],
+        offset: u32,
+        other: [*const u32; 2],
+        beyond: u32,
+    ) -> u64 {
         // SAFETY: the caller makes the same promise.
-        unsafe { T::touching_pairs(self.simd, own, offset, other) }
+        unsafe { T::touching_pairs(self.simd, own, offset, other, beyond) }
     }
     #[inline(always)]
     unsafe fn load_blocks(self, places: RecordPlaces<'_, T>) -> [Self::V; QUAD] {

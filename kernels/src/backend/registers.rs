@@ -82,15 +82,21 @@ pub trait Registers: Copy + 'static {
         // SAFETY: the caller makes the same promise.
         unsafe { coordinates::near_pairs::<Self>(own, offset, other, limit) }
     }
-    /// As [`near_pairs`](Self::near_pairs), nearer than the sum of the reaches of both. Each side has pairs and reaches, which are pairs
-    /// with a second coordinate of 0.
+    /// As [`near_pairs`](Self::near_pairs), nearer than the sum of the reaches of both and one more. Each side has pairs and reaches;
+    /// reaches are pairs with a second coordinate of 0.
     ///
     /// # Safety
     /// All point to `LANES` initialised pairs; nothing writes them during the call.
     #[inline(always)]
-    unsafe fn touching_pairs(self, own: [*const u32; 2], offset: u32, other: [*const u32; 2]) -> u64 {
+    unsafe fn touching_pairs(
+        self,
+        own: [*const u32; 2],
+        offset: u32,
+        other: [*const u32; 2],
+        beyond: u32,
+    ) -> u64 {
         // SAFETY: the caller makes the same promise.
-        unsafe { coordinates::touching_pairs::<Self>(own, offset, other) }
+        unsafe { coordinates::touching_pairs::<Self>(own, offset, other, beyond) }
     }
     /// Loads a block of 16 bytes for each lane: register k holds the number k of every lane, or zero if a block has fewer.
     ///

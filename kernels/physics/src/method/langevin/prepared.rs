@@ -109,9 +109,11 @@ impl CheckedLangevin {
         let count = self.particles.len() as f64;
         let size = StateSize { discs: count, freedoms: 2.0, vary: false, carried: 2.0, number: [8.0, 8.0] };
         let [mut rows, bytes] = size.rows();
+        let mut state = size.bytes();
         if let ChosenSearch::Lists(..) = self.found {
             // The positions of the last list build.
-            rows += 2.0 * 8.0 * count / bytes;
+            state += 2.0 * row(8.0 * count);
+            rows += 1.0;
         }
         // Ids and numbers; neighbour lists.
         let (engine, cells) = match &self.found {
@@ -129,7 +131,7 @@ impl CheckedLangevin {
         // Three copies of the scene's particles, another while they are observed, the frame being written, and the sorting order.
         let particles = (6.0 * size_of::<Particle>() as f64 + 2.0 * 16.0 + 4.0) * count;
         MemoryForecast {
-            needed: (PROGRAM + rows * row(bytes) + engine + cells + particles) as u64,
+            needed: (PROGRAM + state + engine + cells + particles) as u64,
             available: available(),
             what: format!("{count} particles"),
             remedy: "use fewer particles",

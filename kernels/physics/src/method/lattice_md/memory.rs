@@ -142,8 +142,7 @@ impl GranularSizes {
     /// Bytes of a fast method beside its cells, and of the columns of its checkpoints.
     fn fast(&self, search: FastSearch) -> [f64; 2] {
         let derivatives = self.freedoms() * self.carried();
-        let [rows, bytes] = self.state_size().rows();
-        let columns = rows * row(bytes) + 8.0 * self.discs;
+        let columns = self.state_size().bytes() + 8.0 * self.discs;
         let mut written = self.state * derivatives + 3.0 * self.force + 2.0 * 8.0;
         let found = match search {
             FastSearch::Lattice(_) => 4.0 * self.discs,

@@ -6,6 +6,7 @@ use std::cell::Cell;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::{DERIVATIVES, Inertia};
 use stripmine_kernels::isa::AlignedColumn;
+use stripmine_kernels::isa::aligned_column::column_memory;
 use stripmine_kernels::sweep::fast::{RecordEntry, StateRecords};
 use stripmine_kernels::{in_pieces, reorder_into, reordered};
 
@@ -53,16 +54,27 @@ pub(crate) struct StateSize {
 }
 
 impl StateSize {
-    /// Rows in memory of one number per disc, and the bytes of each.
-    pub(crate) fn rows(&self) -> [f64; 2] {
-        let StateSize { discs, freedoms, vary, carried, number: [state, force] } = *self;
-        let block = 16.0 / state;
+    /// Numbers of columns, scratch space for sorting included: of 16 bytes a disc, and of a number of the state a disc.
+    fn columns(&self) -> [f64; 2] {
+        let StateSize { freedoms, vary, carried, number: [state, force], .. } = *self;
         let entries = if vary { 8.0 } else { 2.0 * freedoms };
+        let blocks = (entries * state / 16.0).ceil();
         let columns = freedoms * (carried - 2.0) + f64::from(u8::from(vary));
-        // Records, columns and sums have scratch space for sorting: a block, a column, and as much as the sums.
-        let records = ((entries / block).ceil() + 1.0) * block;
-        let columns = columns + f64::from(u8::from(columns > 0.0));
-        [records + columns + 2.0 * 4.0 * force / state, state * discs]
+        // The scratch space of the blocks is one of them, that of the columns one more, and that of the sums as large as they.
+        let sums = 2.0 * 4.0 * force / 16.0;
+        [blocks + 1.0 + sums, columns + f64::from(u8::from(columns > 0.0))]
+    }
+
+    /// Bytes of the state and the sums.
+    pub(crate) fn bytes(&self) -> f64 {
+        let [blocks, columns] = self.columns();
+        blocks * column_memory(16.0 * self.discs) + columns * column_memory(self.number[0] * self.discs)
+    }
+
+    /// Rows in memory of 16 bytes per disc, and the bytes of each.
+    pub(crate) fn rows(&self) -> [f64; 2] {
+        let [blocks, columns] = self.columns();
+        [blocks + columns * self.number[0] / 16.0, 16.0 * self.discs]
     }
 }
 

@@ -22,10 +22,10 @@
 //!   because their number cannot be predicted.
 
 use super::codes::{PackedCandidate, half_mask_offset, offset_count};
-use super::occupancy::{Occupancy, REACH, ROUNDING};
+use super::occupancy::{FARTHEST, Occupancy};
 use crate::GROUP;
-use crate::backend::RegisterTask;
 use crate::backend::Registers;
+use crate::backend::{RegisterTask, coordinate_pair};
 use crate::sweep::fast::finder::SearchCursor;
 use std::ops::Range;
 
@@ -65,12 +65,11 @@ impl DenseSearch<'_> {
     #[inline(always)]
     fn with<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(self, registers: R) {
         let DenseSearch { occupancy, slack, rows, cursor, full, found } = self;
-        let beyond = (REACH * slack + ROUNDING).ceil();
-        let limit = ((REACH + beyond).powi(2) as i32).min(FARTHEST);
+        // Where radii vary, coordinates beyond the sum of both; else the square of the limit.
+        let limit = if VARY { occupancy.beyond(slack).min(FARTHEST) as i32 } else { occupancy.limit(slack) };
         let shape = occupancy.shape();
         let stride = shape.stride();
         let positions = occupancy.positions();
-        // A pair is found within the sum of two reaches: the radii, and half of what is beyond.
         let radii = if VARY { occupancy.radii().unwrap_or(&[]) } else { positions };
         let occupied = occupancy.occupied();
         let groups = shape.columns().div_ceil(GROUP);
@@ -116,9 +115,6 @@ impl DenseSearch<'_> {
 /// Offsets of the half mask of the widest mask.
 const MOST: usize = offset_count(3);
 
-/// Largest limit of a square: that of an empty cell is above it.
-const FARTHEST: i32 = 1 << 29;
-
 /// Finds the discs of a group that are near the disc at each offset: 16 bits per offset.
 ///
 /// # Safety
@@ -146,7 +142,9 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                         let (own, other) = (positions.add(part), positions.offset(shift));
                         if VARY {
                             let reaches = (radii.add(part), radii.offset(shift));
-                            registers.touching_pairs([own, reaches.0], offsets[$number], [other, reaches.1])
+                            {
+ let beyond = coordinate_pair(limit as i16, 0);
+ registers.touching_pairs([own, reaches.0], offsets[$number], [other, reaches.1], beyond) }
                         } else {
                             registers.near_pairs(own, offsets[$number], other, limit)
                         }

@@ -14,12 +14,16 @@ use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 #[error("disc {0} is already in that cell; a cell holds one disc")]
 pub struct CellTaken(pub usize);
 
-/// Coordinates of the largest contact distance. Cells are smaller than that, and no mask is three times as wide.
-pub(super) const REACH: f64 = 8192.0;
+/// Coordinates of the largest contact distance, if cells are not wider than that.
+const REACH: f64 = 8192.0;
+
+/// Largest distance of an own disc from the centre of a partner's cell. The difference to a partner's position then fits 16 bits,
+/// and an empty cell is farther away than a contact.
+pub(super) const FARTHEST: f64 = 24_000.0;
 
 /// Coordinates by which a distance may be too large after rounding: half of one for each of two positions and an offset, along both
 /// axes.
-pub(super) const ROUNDING: f64 = 3.0;
+const ROUNDING: f64 = 3.0;
 
 /// The position of an empty cell, from which nothing is near.
 const EMPTY: u32 = coordinate_pair(i16::MAX, 0);
@@ -40,13 +44,15 @@ pub const SPARSE: f64 = 0.15;
 
 /// Assignment of discs to cells. Where the lattice is not sparse, it also stores each disc's position in its cell and its radius.
 ///
-/// These lengths are 16-bit integers, in units of 1/8192 of the largest contact distance: good for finding contacts, not for forces.
+/// These lengths are 16-bit integers, in units of 1/8192 of the largest contact distance, or more if cells are wider: good for finding contacts, not for forces.
 /// Every disc is in at most one cell, and every cell has at most one disc.
 #[derive(Clone, Debug)]
 pub struct Occupancy {
     shape: LatticeShape,
     frame: LatticeFrame,
     half_width: usize,
+    /// Largest contact distance (length).
+    reach: f64,
     /// Coordinates per length.
     unit: f64,
     discs: usize,
@@ -74,8 +80,7 @@ impl Occupancy {
     /// the largest such distance.
     ///
     /// # Panics
-    /// If there are 2³² − 3 discs or more, the mask is neither 5×5 nor 7×7, or a cell is wider than `reach`, so that a partner's cell would
-    /// be farther than 16-bit coordinates go.
+    /// If there are 2³² − 3 discs or more, or the mask is neither 5×5 nor 7×7.
     pub fn new(shape: LatticeShape, frame: LatticeFrame, discs: usize, reach: f64, vary: bool) -> Self {
         assert!(
             discs < u32::MAX as usize - SENTINELS,
@@ -86,11 +91,7 @@ impl Occupancy {
             (2..=3).contains(&half_width),
             "no search for a mask of half-width {half_width}: masks of 5×5 and 7×7 cells are supported"
         );
-        assert!(
-            frame.edge.iter().all(|&edge| edge <= reach),
-            "cells of {:?} are wider than the contact distance {reach}",
-            frame.edge
-        );
+        let farthest = frame.edge[0].max(frame.edge[1]) * (half_width as f64 + 0.5);
         // The last register of the last row may extend beyond the padded lattice.
         let length = shape.padded() + GROUP + 1;
         let sparse = (discs as f64) < SPARSE * shape.cells() as f64;
@@ -98,7 +99,8 @@ impl Occupancy {
         Occupancy {
             frame,
             half_width,
-            unit: REACH / reach,
+            reach,
+            unit: (REACH / reach).min(FARTHEST / farthest),
             discs,
             cell: vec![NOWHERE; discs],
             index: AlignedColumn::filled(INDEX, discs as u32, length),
@@ -216,7 +218,7 @@ impl Occupancy {
         self.outside -= 1;
         self.index[at] = disc as u32;
         if let Some(radii) = &mut self.radius {
-            radii[at] = coordinate_pair((radius * self.unit + 0.5 * ROUNDING).ceil() as i16, 0);
+            radii[at] = coordinate_pair((radius * self.unit).ceil() as i16, 0);
         }
         self.update_position(disc, position);
         self.occupied.set(at, true);
@@ -338,7 +340,19 @@ impl Occupancy {
     /// Largest contact distance (length).
     #[inline]
     pub(super) fn reach(&self) -> f64 {
-        REACH / self.unit
+        self.reach
+    }
+
+    /// Coordinates beyond the contact distance at which a pair is found that may be farther apart than a contact by a fraction of it.
+    #[inline]
+    pub(super) fn beyond(&self, slack: f64) -> f64 {
+        (self.reach * self.unit * slack + ROUNDING).ceil()
+    }
+
+    /// Square of the coordinates within which such a pair of the largest discs is found.
+    #[inline]
+    pub(super) fn limit(&self, slack: f64) -> i32 {
+        ((self.reach * self.unit).ceil() + self.beyond(slack)).min(FARTHEST).powi(2) as i32
     }
 
     #[inline]
