@@ -198,7 +198,8 @@ fn commands_are_in_blocks_that_are_run() {
     assert!(faults.is_empty(), "{} commands that are not run:\n{}", faults.len(), faults.join("\n"));
 }
 
-/// True if a line is in a block whose commands nothing runs. Blocks of kind `text,printed` are output alone.
+/// True if a line is in a block whose commands nothing runs. Blocks of kind `text,printed` show what one
+/// machine printed.
 fn is_unchecked(text: &str, at: usize) -> bool {
     let mut block = None;
     for line in text.lines().take(at) {

@@ -1,27 +1,25 @@
 //! Machines that a kernel runs on: register files (scalar, `pulp`, `wide`) and the tape.
 
-mod coordinates;
 mod dispatch;
 mod estimated;
 mod precision;
 mod pulp;
-mod records;
 mod registers;
 mod scalar;
 pub mod tape;
 mod values;
 mod wide;
 
-pub(crate) use coordinates::coordinate_pair;
 pub(crate) use dispatch::dispatch_estimating;
 pub(crate) use dispatch::{GROUP, dispatch};
 pub use dispatch::{InstructionSet, RegisterTask, dispatch_best, dispatch_native};
 pub use estimated::EstimatingElement;
 pub use precision::Precision;
 pub use pulp::{Pulp, PulpElement};
-pub use records::RecordPlaces;
-pub(crate) use records::{QUAD, block};
 pub(crate) use registers::Strip;
+pub(crate) use registers::coordinates::coordinate_pair;
+pub use registers::records::RecordPlaces;
+pub(crate) use registers::records::{QUAD, block};
 pub use registers::{IndexLanes, Registers};
 pub use scalar::Scalar;
 pub use tape::{ListingLine, Tape, TapeListing};

@@ -1,8 +1,7 @@
 //! Registers of the processor at hand, chosen at run time: AVX-512, AVX2, NEON, or scalar, from the crate `pulp`.
 
-use super::coordinates;
-use super::records::{self, QUAD, RecordPlaces, block};
-use super::registers::{IndexLanes, Registers};
+use super::registers::records::{self, QUAD, RecordPlaces, block};
+use super::registers::{IndexLanes, Registers, coordinates};
 use super::values::{implement_operator, implement_predicate, implement_vector};
 use crate::isa::list::for_each_op;
 use crate::isa::{Element, Predicate, Vector};
@@ -101,25 +100,16 @@ pub trait PulpElement: Element {
     );
 }
 
-/// Functions of AVX2 and AVX-512.
-#[cfg(target_arch = "x86_64")]
-mod native {
-    pub(super) use super::super::coordinates::native::*;
-    pub(super) use super::super::records::native::*;
-}
-
-/// Calls the function of this instruction set on x86-64, or else evaluates the last expression.
+/// Evaluates the expression of this instruction set, or else the last one.
 macro_rules! on_native {
-    ($simd:ident, $v4:ident | $v3:ident, |$set:ident, $native:ident| $call:expr, $otherwise:expr) => {{
+    ($simd:ident, |$set:ident| $v4:expr, $v3:expr, $otherwise:expr) => {{
         #[cfg(target_arch = "x86_64")]
         {
             if let Some($set) = same_value::<S, pulp::x86::V4>($simd) {
-                use native::$v4 as $native;
-                return $call;
+                return $v4;
             }
             if let Some($set) = same_value::<S, pulp::x86::V3>($simd) {
-                use native::$v3 as $native;
-                return $call;
+                return $v3;
             }
         }
         $otherwise
@@ -247,8 +237,8 @@ macro_rules! pulp_element {
                     if size_of::<$ty>() == size_of::<u32>() {
                         return on_native!(
                             simd,
-                            near_pairs_v4 | near_pairs_v3,
-                            |set, near| near(set, own, offset, other, limit),
+                            |set| coordinates::native::near_pairs_v4(set, own, offset, other, limit),
+                            coordinates::native::near_pairs_v3(set, own, offset, other, limit),
                             coordinates::near_pairs::<Pulp<S, $ty>>(own, offset, other, limit)
                         );
                     }
@@ -272,8 +262,8 @@ macro_rules! pulp_element {
                     if size_of::<$ty>() == size_of::<u32>() {
                         return on_native!(
                             simd,
-                            touching_pairs_v4 | touching_pairs_v3,
-                            |set, touching| touching(set, own, offset, other, beyond),
+                            |set| coordinates::native::touching_pairs_v4(set, own, offset, other, beyond),
+                            coordinates::native::touching_pairs_v3(set, own, offset, other, beyond),
                             coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other, beyond)
                         );
                     }
@@ -286,8 +276,8 @@ macro_rules! pulp_element {
                 unsafe {
                     on_native!(
                         simd,
-                        $load_v4 | $load_v3,
-                        |set, load| as_registers(load(set, places)),
+                        |set| as_registers(records::native::$load_v4(set, places)),
+                        as_registers(records::native::$load_v3(set, places)),
                         inner(records::load_by_number(Pulp::<S, $ty>::new(simd), block::<$ty>(), places))
                     )
                 }
@@ -296,11 +286,16 @@ macro_rules! pulp_element {
             unsafe fn load_block_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
                 // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
-                    on_native!(simd, $run_v4 | $run_v3, |set, load| as_registers(load(set, first)), {
-                        let (numbers, first) = (block::<$ty>(), first.cast_mut());
-                        let run = RecordPlaces::run(first, numbers);
-                        inner(records::load_by_number(Pulp::<S, $ty>::new(simd), numbers, run))
-                    })
+                    on_native!(
+                        simd,
+                        |set| as_registers(records::native::$run_v4(set, first)),
+                        as_registers(records::native::$run_v3(set, first)),
+                        {
+                            let (numbers, first) = (block::<$ty>(), first.cast_mut());
+                            let run = RecordPlaces::run(first, numbers);
+                            inner(records::load_by_number(Pulp::<S, $ty>::new(simd), numbers, run))
+                        }
+                    )
                 }
             }
             #[inline(always)]
@@ -309,8 +304,8 @@ macro_rules! pulp_element {
                 unsafe {
                     on_native!(
                         simd,
-                        $store_v4 | $store_v3,
-                        |set, store| store(set, as_registers(values), first),
+                        |set| records::native::$store_v4(set, as_registers(values), first),
+                        records::native::$store_v3(set, as_registers(values), first),
                         {
                             let (numbers, values) = (block::<$ty>(), wrapped(simd, values));
                             let run = RecordPlaces::run(first, numbers);
@@ -323,10 +318,15 @@ macro_rules! pulp_element {
             unsafe fn load_quad_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
                 // SAFETY: the caller makes the promise of the functions called.
                 unsafe {
-                    on_native!(simd, $quads_v4 | $quads_v3, |set, load| as_registers(load(set, first)), {
-                        let run = RecordPlaces::run(first.cast_mut(), QUAD);
-                        inner(records::load_by_number(Pulp::<S, $ty>::new(simd), QUAD, run))
-                    })
+                    on_native!(
+                        simd,
+                        |set| as_registers(records::native::$quads_v4(set, first)),
+                        as_registers(records::native::$quads_v3(set, first)),
+                        {
+                            let run = RecordPlaces::run(first.cast_mut(), QUAD);
+                            inner(records::load_by_number(Pulp::<S, $ty>::new(simd), QUAD, run))
+                        }
+                    )
                 }
             }
             #[inline(always)]
@@ -340,8 +340,18 @@ macro_rules! pulp_element {
                 unsafe {
                     on_native!(
                         simd,
-                        $add_v4 | $add_v3,
-                        |set, add| add(set, count, [as_registers(added), as_registers(subtracted)], quads),
+                        |set| records::native::$add_v4(
+                            set,
+                            count,
+                            [as_registers(added), as_registers(subtracted)],
+                            quads
+                        ),
+                        records::native::$add_v3(
+                            set,
+                            count,
+                            [as_registers(added), as_registers(subtracted)],
+                            quads
+                        ),
                         {
                             let values = [wrapped(simd, added), wrapped(simd, subtracted)];
                             records::add_by_number(Pulp::<S, $ty>::new(simd), count, values, quads);
@@ -377,7 +387,7 @@ fn same_value<A: Copy + 'static, B: Copy + 'static>(value: A) -> Option<B> {
     (same && size_of::<A>() == size_of::<B>()).then(|| unsafe { std::mem::transmute_copy(&value) })
 }
 
-/// The same registers in the type of another crate.
+/// Registers in the type of another crate.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn as_registers<A: Copy, B: Copy>(registers: [A; QUAD]) -> [B; QUAD] {

@@ -3,7 +3,7 @@
 //! A pair is one 32-bit word: x in the low half, y in the high half. A processor subtracts, squares and adds both coordinates of a
 //! register of pairs in three instructions. Portable SIMD does not have them. The bits are the same everywhere.
 
-use super::registers::Registers;
+use super::Registers;
 
 /// A pair of coordinates.
 #[inline(always)]
@@ -32,7 +32,7 @@ const fn square_of_distance(own: u32, offset: u32, other: u32) -> i32 {
 /// # Safety
 /// As there.
 #[inline(always)]
-pub(super) unsafe fn near_pairs<R: Registers>(
+pub(in crate::backend) unsafe fn near_pairs<R: Registers>(
     own: *const u32,
     offset: u32,
     other: *const u32,
@@ -52,7 +52,7 @@ pub(super) unsafe fn near_pairs<R: Registers>(
 /// # Safety
 /// As there.
 #[inline(always)]
-pub(super) unsafe fn touching_pairs<R: Registers>(
+pub(in crate::backend) unsafe fn touching_pairs<R: Registers>(
     [own, own_reach]: [*const u32; 2],
     offset: u32,
     [other, other_reach]: [*const u32; 2],
@@ -72,9 +72,9 @@ pub(super) unsafe fn touching_pairs<R: Registers>(
     bits
 }
 
-/// The same in the registers of AVX2 and AVX-512.
+/// Comparisons in the registers of AVX2 and AVX-512.
 #[cfg(target_arch = "x86_64")]
-pub(super) mod native {
+pub(in crate::backend) mod native {
     use pulp::x86::{V3, V4};
     use std::arch::x86_64::{__m256i, __m512i, _mm256_loadu_si256, _mm512_loadu_si512};
 
@@ -103,7 +103,7 @@ pub(super) mod native {
     /// # Safety
     /// There are 16 pairs in both places.
     #[inline(always)]
-    pub(in super::super) unsafe fn near_pairs_v4(
+    pub(in crate::backend) unsafe fn near_pairs_v4(
         v4: V4,
         own: *const u32,
         offset: u32,
@@ -119,7 +119,7 @@ pub(super) mod native {
     /// # Safety
     /// There are 8 pairs in both places.
     #[inline(always)]
-    pub(in super::super) unsafe fn near_pairs_v3(
+    pub(in crate::backend) unsafe fn near_pairs_v3(
         v3: V3,
         own: *const u32,
         offset: u32,
@@ -135,7 +135,7 @@ pub(super) mod native {
     /// # Safety
     /// There are 16 pairs and 16 reaches in both places.
     #[inline(always)]
-    pub(in super::super) unsafe fn touching_pairs_v4(
+    pub(in crate::backend) unsafe fn touching_pairs_v4(
         v4: V4,
         [own, own_reach]: [*const u32; 2],
         offset: u32,
@@ -157,7 +157,7 @@ pub(super) mod native {
     /// # Safety
     /// There are 8 pairs and 8 reaches in both places.
     #[inline(always)]
-    pub(in super::super) unsafe fn touching_pairs_v3(
+    pub(in crate::backend) unsafe fn touching_pairs_v3(
         v3: V3,
         [own, own_reach]: [*const u32; 2],
         offset: u32,

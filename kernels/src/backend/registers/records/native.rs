@@ -13,7 +13,7 @@ macro_rules! load_blocks {
         /// # Safety
         /// As for [`Registers::load_blocks`](super::Registers::load_blocks).
         #[inline(always)]
-        pub(in super::super) unsafe fn $name(set: $set, places: RecordPlaces<'_, $number>) -> [$v; QUAD] {
+        pub(in crate::backend) unsafe fn $name(set: $set, places: RecordPlaces<'_, $number>) -> [$v; QUAD] {
             // SAFETY: the caller promises a block for every lane, and the token the instructions.
             unsafe { $split(set, [$($load(places.at($lane))),+]) }
         }
@@ -31,7 +31,7 @@ macro_rules! add_quads {
         /// # Safety
         /// As for [`Registers::add_quads`](super::Registers::add_quads).
         #[inline(always)]
-        pub(in super::super) unsafe fn $name(
+        pub(in crate::backend) unsafe fn $name(
             set: $set,
             count: usize,
             [added, subtracted]: [[$v; QUAD]; 2],
@@ -99,7 +99,7 @@ fn split_pairs_v4(v4: V4, p: [__m128d; 8]) -> [__m512d; QUAD] {
 /// # Safety
 /// `first` points to the blocks of eight lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn load_block_run_f64_v4(v4: V4, first: *const f64) -> [__m512d; QUAD] {
+pub(in crate::backend) unsafe fn load_block_run_f64_v4(v4: V4, first: *const f64) -> [__m512d; QUAD] {
     // SAFETY: the caller promises 16 numbers, and the token the instructions.
     let (x, y) =
         parted_f64_v4(v4, unsafe { _mm512_loadu_pd(first) }, unsafe { _mm512_loadu_pd(first.add(8)) });
@@ -110,7 +110,11 @@ pub(in super::super) unsafe fn load_block_run_f64_v4(v4: V4, first: *const f64) 
 /// # Safety
 /// `first` points to space for the blocks of eight lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn store_block_run_f64_v4(v4: V4, [x, y, ..]: [__m512d; QUAD], first: *mut f64) {
+pub(in crate::backend) unsafe fn store_block_run_f64_v4(
+    v4: V4,
+    [x, y, ..]: [__m512d; QUAD],
+    first: *mut f64,
+) {
     let set = v4.avx512f;
     let low = set._mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11);
     let high = set._mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15);
@@ -124,7 +128,7 @@ pub(in super::super) unsafe fn store_block_run_f64_v4(v4: V4, [x, y, ..]: [__m51
 /// # Safety
 /// `first` points to the quads of eight lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn load_quad_run_f64_v4(v4: V4, first: *const f64) -> [__m512d; QUAD] {
+pub(in crate::backend) unsafe fn load_quad_run_f64_v4(v4: V4, first: *const f64) -> [__m512d; QUAD] {
     // SAFETY: the caller promises 32 numbers, and the token the instructions.
     let (a, b) = unsafe { (_mm512_loadu_pd(first), _mm512_loadu_pd(first.add(8))) };
     // SAFETY: as above.
@@ -170,7 +174,7 @@ fn split_pairs_v3(v3: V3, p: [__m128d; 4]) -> [__m256d; QUAD] {
 /// # Safety
 /// `first` points to the blocks of four lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn load_block_run_f64_v3(v3: V3, first: *const f64) -> [__m256d; QUAD] {
+pub(in crate::backend) unsafe fn load_block_run_f64_v3(v3: V3, first: *const f64) -> [__m256d; QUAD] {
     let set = v3.avx;
     // SAFETY: the caller promises 8 numbers, and the token the instructions.
     let (a, b) = unsafe { (_mm256_loadu_pd(first), _mm256_loadu_pd(first.add(4))) };
@@ -182,7 +186,11 @@ pub(in super::super) unsafe fn load_block_run_f64_v3(v3: V3, first: *const f64) 
 /// # Safety
 /// `first` points to space for the blocks of four lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn store_block_run_f64_v3(v3: V3, [x, y, ..]: [__m256d; QUAD], first: *mut f64) {
+pub(in crate::backend) unsafe fn store_block_run_f64_v3(
+    v3: V3,
+    [x, y, ..]: [__m256d; QUAD],
+    first: *mut f64,
+) {
     let set = v3.avx;
     let (c, d) = (set._mm256_unpacklo_pd(x, y), set._mm256_unpackhi_pd(x, y));
     // SAFETY: the caller promises space for 8 numbers, and the token the instructions.
@@ -195,7 +203,7 @@ pub(in super::super) unsafe fn store_block_run_f64_v3(v3: V3, [x, y, ..]: [__m25
 /// # Safety
 /// `first` points to the quads of four lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn load_quad_run_f64_v3(v3: V3, first: *const f64) -> [__m256d; QUAD] {
+pub(in crate::backend) unsafe fn load_quad_run_f64_v3(v3: V3, first: *const f64) -> [__m256d; QUAD] {
     // SAFETY: the caller promises 16 numbers, and the token the instructions.
     let quads = unsafe {
         [
@@ -334,7 +342,7 @@ fn parted_f32_v4(v4: V4, a: __m512, b: __m512) -> (__m512, __m512) {
 /// # Safety
 /// `first` points to the quads of sixteen lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn load_quad_run_f32_v4(v4: V4, first: *const f32) -> [__m512; QUAD] {
+pub(in crate::backend) unsafe fn load_quad_run_f32_v4(v4: V4, first: *const f32) -> [__m512; QUAD] {
     // SAFETY: the caller promises 64 numbers, and the token the instructions.
     let (a, b) = unsafe { (_mm512_loadu_ps(first), _mm512_loadu_ps(first.add(16))) };
     // SAFETY: as above.
@@ -356,7 +364,11 @@ fn by_turns_f32_v4(v4: V4, a: __m512, b: __m512) -> (__m512, __m512) {
 /// # Safety
 /// `first` points to space for the blocks of sixteen lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn store_block_run_f32_v4(v4: V4, [x, y, u, v]: [__m512; QUAD], first: *mut f32) {
+pub(in crate::backend) unsafe fn store_block_run_f32_v4(
+    v4: V4,
+    [x, y, u, v]: [__m512; QUAD],
+    first: *mut f32,
+) {
     let ((xu, more_xu), (yv, more_yv)) = (by_turns_f32_v4(v4, x, u), by_turns_f32_v4(v4, y, v));
     let ((a, b), (c, d)) = (by_turns_f32_v4(v4, xu, yv), by_turns_f32_v4(v4, more_xu, more_yv));
     // SAFETY: the caller promises space for 64 numbers, and the token the instructions.
@@ -371,7 +383,7 @@ pub(in super::super) unsafe fn store_block_run_f32_v4(v4: V4, [x, y, u, v]: [__m
 /// # Safety
 /// `first` points to the quads of eight lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn load_quad_run_f32_v3(v3: V3, first: *const f32) -> [__m256; QUAD] {
+pub(in crate::backend) unsafe fn load_quad_run_f32_v3(v3: V3, first: *const f32) -> [__m256; QUAD] {
     // SAFETY: the caller promises 32 numbers, and the token the instructions.
     unsafe { load_blocks_f32_v3(v3, RecordPlaces::run(first.cast_mut(), QUAD)) }
 }
@@ -379,7 +391,7 @@ pub(in super::super) unsafe fn load_quad_run_f32_v3(v3: V3, first: *const f32) -
 /// # Safety
 /// `first` points to space for the blocks of eight lanes.
 #[inline(always)]
-pub(in super::super) unsafe fn store_block_run_f32_v3(v3: V3, values: [__m256; QUAD], first: *mut f32) {
+pub(in crate::backend) unsafe fn store_block_run_f32_v3(v3: V3, values: [__m256; QUAD], first: *mut f32) {
     let q = join_f32_v3(v3, values);
     // SAFETY: the caller promises space for 32 numbers, and the token the instructions.
     unsafe {
@@ -394,6 +406,6 @@ pub(in super::super) unsafe fn store_block_run_f32_v3(v3: V3, values: [__m256; Q
     }
 }
 
-pub(in super::super) use {
+pub(in crate::backend) use {
     load_quad_run_f32_v3 as load_block_run_f32_v3, load_quad_run_f32_v4 as load_block_run_f32_v4,
 };

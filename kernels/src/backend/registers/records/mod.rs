@@ -18,9 +18,9 @@
 //! are the same.
 
 #[cfg(target_arch = "x86_64")]
-pub(super) mod native;
+pub(in crate::backend) mod native;
 
-use super::registers::{MAX_LANES, Registers};
+use super::{MAX_LANES, Registers};
 use crate::isa::Storage;
 
 /// Numbers of a quad.
@@ -65,7 +65,7 @@ impl<'a, T> RecordPlaces<'a, T> {
 /// # Safety
 /// Every lane's record has so many initialised numbers.
 #[inline(always)]
-pub(super) unsafe fn load_by_number<R: Registers>(
+pub(in crate::backend) unsafe fn load_by_number<R: Registers>(
     registers: R,
     numbers: usize,
     places: RecordPlaces<'_, R::Lane>,
@@ -108,7 +108,7 @@ fn spilled<R: Registers>(registers: R, [x, y, u, v]: [R::V; QUAD]) -> [[R::Lane;
 /// # Safety
 /// Every lane's record has space for so many numbers.
 #[inline(always)]
-pub(super) unsafe fn store_by_number<R: Registers>(
+pub(in crate::backend) unsafe fn store_by_number<R: Registers>(
     registers: R,
     numbers: usize,
     values: [R::V; QUAD],
@@ -128,7 +128,7 @@ pub(super) unsafe fn store_by_number<R: Registers>(
 /// # Safety
 /// As for [`Registers::add_quads`].
 #[inline(always)]
-pub(super) unsafe fn add_by_number<R: Registers>(
+pub(in crate::backend) unsafe fn add_by_number<R: Registers>(
     registers: R,
     count: usize,
     [added, subtracted]: [[R::V; QUAD]; 2],

@@ -1,11 +1,13 @@
 //! Machine over registers: one implementation of every instruction for any register file.
 
-use super::coordinates;
-use super::records::{self, QUAD, RecordPlaces, block};
+pub(super) mod coordinates;
+pub(super) mod records;
+
 use crate::isa::list::for_each_op;
 use crate::isa::{
     ArrayColumn, Element, LaneCounter, Machine, Memory, Slot, Storage, Vector, is_same_storage,
 };
+use records::{QUAD, RecordPlaces, block};
 use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
@@ -72,7 +74,7 @@ pub trait Registers: Copy + 'static {
     /// Truth values as bits, lane 0 lowest.
     fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
 
-    /// Bits of the lanes in which two [pairs of coordinates](super::coordinates) are nearer than the root of `limit`, after the offset
+    /// Bits of the lanes in which two [pairs of coordinates](coordinates) are nearer than the root of `limit`, after the offset
     /// is subtracted from the first.
     ///
     /// # Safety
