@@ -213,7 +213,7 @@ impl CommandFailure {
         }
     }
 
-    /// Message as [`report_failure`] prints it after "error: ".
+    /// Message as `report_failure` prints it after "error: ".
     pub fn message_text(&self) -> String {
         let text = match self {
             CommandFailure::Arguments(mistake) => mistake.render().to_string(),

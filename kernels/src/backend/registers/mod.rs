@@ -74,8 +74,8 @@ pub trait Registers: Copy + 'static {
     /// Truth values as bits, lane 0 lowest.
     fn bits(self, predicate: <Self::V as Vector>::Predicate) -> u64;
 
-    /// Bits of the lanes in which two [pairs of coordinates](coordinates) are nearer than the root of `limit`, after the offset
-    /// is subtracted from the first.
+    /// Bits of the lanes in which two pairs of 16-bit coordinates (x in the low half of a word, y in the high half) are nearer than the
+    /// root of `limit`, after the offset is subtracted from the first.
     ///
     /// # Safety
     /// `own` and `other` point to `LANES` initialised pairs; nothing writes them during the call.
