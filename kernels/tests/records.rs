@@ -10,7 +10,7 @@ use stripmine_kernels::noise::{RandomPurpose, Stream};
 const LANES: usize = 16;
 const QUAD: usize = 4;
 
-/// Quads of the discs 0 to 19, and the discs of the lanes, some of which occur twice.
+/// Quads of the discs 0 to 19, and the discs of the lanes; some discs are in two lanes.
 struct Quads<P> {
     memory: Vec<P>,
     discs: [u32; LANES],

@@ -173,6 +173,65 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    /// Half of the cells of a lattice have a disc. Every pair that may touch is found once, in cells as narrow as the mask allows and
+    /// in wider ones, for equal and unequal discs, and beyond contact if asked. Few others are.
+    #[test]
+    fn every_pair_on_a_lattice_is_found_once(
+        counts in [8usize..40, 8usize..40],
+        periodic: [bool; 2],
+        (half_width, stretch) in (2u32..=3, [1.0..3.0, 1.0..3.0]),
+        (vary, slack, reach) in (any::<bool>(), prop_oneof![Just(0.0), 0.0..0.1], 0.01..100.0),
+        seed: u64,
+    ) {
+        let narrowest = reach * (1.0 + slack) / f64::from(half_width);
+        let edge = stretch.map(|stretch| narrowest * stretch);
+        let frame = LatticeFrame { origin: ORIGIN, edge };
+        let shape = LatticeShape::new(counts[0], counts[1], &Mask::square(half_width), periodic).unwrap();
+        let mut random = Stream::new(seed, RandomPurpose::Test, 0);
+        let mut discs = vec![];
+        for cell in (0..counts[1]).flat_map(|row| (0..counts[0]).map(move |column| [column, row])) {
+            if random.random::<bool>() {
+                let place = edge.map(|edge| edge * (random.random::<f64>() - 0.5));
+                let radius = 0.5 * reach * if vary { 1.0 - 0.6 * random.random::<f64>() } else { 1.0 };
+                discs.push((cell, place, radius));
+            }
+        }
+        let mut occupancy = Occupancy::new(shape, frame, discs.len(), reach, vary);
+        for (disc, &(cell, place, radius)) in discs.iter().enumerate() {
+            occupancy.enter(disc, cell, place, radius).unwrap();
+        }
+        occupancy.repeat_images();
+        let places = [0, 1].map(|axis| {
+            let sentinels = [0.0, 1e3 * reach];
+            discs.iter().map(|disc| disc.1[axis]).chain(sentinels).collect::<Vec<f64>>()
+        });
+        let codes = Codes::new(&occupancy, frame);
+        let found = found(&Lattice { occupancy: &occupancy, codes: &codes, slack }, &places);
+        let positions: Vec<[f64; 2]> = discs
+            .iter()
+            .map(|(cell, place, _)| [0, 1].map(|axis| (cell[axis] as f64 + 0.5) * edge[axis] + place[axis]))
+            .collect();
+        let sides = [0, 1].map(|axis| counts[axis] as f64 * edge[axis]);
+        let within = |&[a, b]: &[u32; 2]| (discs[a as usize].2 + discs[b as usize].2) * (1.0 + slack);
+        for (pair, to) in naive(&positions, sides, periodic, reach * (1.0 + slack)) {
+            if to[0].hypot(to[1]) < within(&pair) {
+                let there = found.get(&pair);
+                prop_assert!(there.is_some(), "{pair:?} not found, {to:?} apart");
+                prop_assert!((0..2).all(|axis| (there.unwrap()[axis] - to[axis]).abs() < 1e-9 * reach));
+            }
+        }
+        for (pair, [x, y]) in &found {
+            prop_assert!((pair[1] as usize) < discs.len(), "an empty cell is near disc {}", pair[0]);
+            // The slack of unequal discs is that of the largest. Coordinates are coarser in wide cells.
+            let touching = discs[pair[0] as usize].2 + discs[pair[1] as usize].2;
+            prop_assert!(x.hypot(*y) < touching + (slack + 0.004) * reach, "{pair:?} is far: {x}, {y}");
+        }
+    }
+}
+
 /// An empty lattice for discs that touch at a distance of 1, with its frame.
 fn lattice(columns: usize) -> (Occupancy, LatticeFrame) {
     let shape = LatticeShape::new(columns, 20, &Mask::square(2), [false; 2]).unwrap();

@@ -19,7 +19,7 @@ pub use pulp::{Pulp, PulpElement};
 pub(crate) use registers::Strip;
 pub(crate) use registers::coordinates::coordinate_pair;
 pub use registers::records::RecordPlaces;
-pub(crate) use registers::records::{QUAD, block};
+pub(crate) use registers::records::{QUAD, block, registers_of};
 pub use registers::{IndexLanes, Registers};
 pub use scalar::Scalar;
 pub use tape::{ListingLine, Tape, TapeListing};

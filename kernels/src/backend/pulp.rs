@@ -39,81 +39,41 @@ pub trait PulpElement: Element {
     fn none<S: Simd>(simd: S, a: Self::P<S>) -> bool;
     #[doc(hidden)]
     fn bits<S: Simd>(simd: S, a: Self::P<S>) -> u64;
-    /// As [`Registers::near_pairs`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn near_pairs<S: Simd>(
-        simd: S,
-        own: *const u32,
-        offset: u32,
-        other: *const u32,
-        limit: i32,
-    ) -> u64;
-    /// As [`Registers::touching_pairs`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn touching_pairs<S: Simd>(
-        simd: S,
-        own: [*const u32; 2],
-        offset: u32,
-        other: [*const u32; 2],
-        beyond: u32,
-    ) -> u64;
-    /// As [`Registers::load_blocks`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn load_blocks<S: Simd>(simd: S, places: RecordPlaces<'_, Self>) -> [Self::V<S>; QUAD];
-    /// As [`Registers::load_block_run`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn load_block_run<S: Simd>(simd: S, first: *const Self) -> [Self::V<S>; QUAD];
-    /// As [`Registers::store_block_run`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn store_block_run<S: Simd>(simd: S, values: [Self::V<S>; QUAD], first: *mut Self);
-    /// As [`Registers::load_quad_run`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn load_quad_run<S: Simd>(simd: S, first: *const Self) -> [Self::V<S>; QUAD];
-    /// As [`Registers::add_quads`].
-    ///
-    /// # Safety
-    /// As there.
-    #[doc(hidden)]
-    unsafe fn add_quads<S: Simd>(
-        simd: S,
-        count: usize,
-        values: [[Self::V<S>; QUAD]; 2],
-        quads: [RecordPlaces<'_, Self>; 2],
-    );
 }
 
-/// Evaluates the expression of this instruction set, or else the last one.
+/// Calls the function of a list for AVX-512 or AVX2 in double precision, or for these in single precision, or else evaluates the
+/// last expression.
 macro_rules! on_native {
-    ($simd:ident, |$set:ident| $v4:expr, $v3:expr, $otherwise:expr) => {{
+    ($registers:ident, $module:ident::native::[$($names:ident)+]$arguments:tt, |$result:ident| $with:expr,
+     $otherwise:expr) => {{
         #[cfg(target_arch = "x86_64")]
         {
-            if let Some($set) = same_value::<S, pulp::x86::V4>($simd) {
-                return $v4;
+            if let Some(v4) = same_value::<S, pulp::x86::V4>($registers.simd) {
+                on_native!(v4, first, $module [$($names)+] $arguments, |$result| $with);
             }
-            if let Some($set) = same_value::<S, pulp::x86::V3>($simd) {
-                return $v3;
+            if let Some(v3) = same_value::<S, pulp::x86::V3>($registers.simd) {
+                on_native!(v3, second, $module [$($names)+] $arguments, |$result| $with);
             }
         }
         $otherwise
     }};
+    ($set:ident, first, $module:ident [$double:ident $_a:ident $single:ident $_b:ident] $arguments:tt,
+     |$result:ident| $with:expr) => {
+        on_native!($set, of_precision, $module [$double $single] $arguments, |$result| $with);
+    };
+    ($set:ident, second, $module:ident [$_a:ident $double:ident $_b:ident $single:ident] $arguments:tt,
+     |$result:ident| $with:expr) => {
+        on_native!($set, of_precision, $module [$double $single] $arguments, |$result| $with);
+    };
+    ($set:ident, of_precision, $module:ident [$double:ident $single:ident] ($($argument:expr),+),
+     |$result:ident| $with:expr) => {
+        if T::BYTES == size_of::<f64>() {
+            let $result = $module::native::$double($set, $($argument),+);
+            return $with;
+        }
+        let $result = $module::native::$single($set, $($argument),+);
+        return $with;
+    };
 }
 
 /// Forwards an operation of registers to their elements.
@@ -150,8 +110,7 @@ macro_rules! pulp_element {
     ($ty:ident, $register:ident, $truth:ident, $lanes:ident, $widest:literal,
      $splat:ident $add:ident $sub:ident $mul:ident $div:ident $min:ident $max:ident $sqrt:ident $abs:ident
      $less_than:ident $less_equal:ident $equal:ident $select:ident $and:ident $not:ident $first_true:ident
-     $movemask:ident $bits:ident $load_v4:ident $run_v4:ident $store_v4:ident $quads_v4:ident $add_v4:ident
-     $load_v3:ident $run_v3:ident $store_v3:ident $quads_v3:ident $add_v3:ident) => {
+     $movemask:ident $bits:ident) => {
         impl PulpElement for $ty {
             type V<S: Simd> = S::$register;
             type P<S: Simd> = S::$truth;
@@ -220,145 +179,6 @@ macro_rules! pulp_element {
                 }
                 bits_by_lane(pulp::bytemuck::bytes_of(&a), S::$lanes)
             }
-            #[cfg_attr(
-                not(target_arch = "x86_64"),
-                expect(unused_variables, reason = "x86-64 has faster instructions")
-            )]
-            #[inline(always)]
-            unsafe fn near_pairs<S: Simd>(
-                simd: S,
-                own: *const u32,
-                offset: u32,
-                other: *const u32,
-                limit: i32,
-            ) -> u64 {
-                // SAFETY: the caller makes the promise of the functions called; lanes of single precision are as wide as pairs.
-                unsafe {
-                    if size_of::<$ty>() == size_of::<u32>() {
-                        return on_native!(
-                            simd,
-                            |set| coordinates::native::near_pairs_v4(set, own, offset, other, limit),
-                            coordinates::native::near_pairs_v3(set, own, offset, other, limit),
-                            coordinates::near_pairs::<Pulp<S, $ty>>(own, offset, other, limit)
-                        );
-                    }
-                    coordinates::near_pairs::<Pulp<S, $ty>>(own, offset, other, limit)
-                }
-            }
-            #[cfg_attr(
-                not(target_arch = "x86_64"),
-                expect(unused_variables, reason = "x86-64 has faster instructions")
-            )]
-            #[inline(always)]
-            unsafe fn touching_pairs<S: Simd>(
-                simd: S,
-                own: [*const u32; 2],
-                offset: u32,
-                other: [*const u32; 2],
-                beyond: u32,
-            ) -> u64 {
-                // SAFETY: the caller makes the promise of the functions called; lanes of single precision are as wide as pairs.
-                unsafe {
-                    if size_of::<$ty>() == size_of::<u32>() {
-                        return on_native!(
-                            simd,
-                            |set| coordinates::native::touching_pairs_v4(set, own, offset, other, beyond),
-                            coordinates::native::touching_pairs_v3(set, own, offset, other, beyond),
-                            coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other, beyond)
-                        );
-                    }
-                    coordinates::touching_pairs::<Pulp<S, $ty>>(own, offset, other, beyond)
-                }
-            }
-            #[inline(always)]
-            unsafe fn load_blocks<S: Simd>(simd: S, places: RecordPlaces<'_, $ty>) -> [S::$register; QUAD] {
-                // SAFETY: the caller makes the promise of the functions called.
-                unsafe {
-                    on_native!(
-                        simd,
-                        |set| as_registers(records::native::$load_v4(set, places)),
-                        as_registers(records::native::$load_v3(set, places)),
-                        inner(records::load_by_number(Pulp::<S, $ty>::new(simd), block::<$ty>(), places))
-                    )
-                }
-            }
-            #[inline(always)]
-            unsafe fn load_block_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
-                // SAFETY: the caller makes the promise of the functions called.
-                unsafe {
-                    on_native!(
-                        simd,
-                        |set| as_registers(records::native::$run_v4(set, first)),
-                        as_registers(records::native::$run_v3(set, first)),
-                        {
-                            let (numbers, first) = (block::<$ty>(), first.cast_mut());
-                            let run = RecordPlaces::run(first, numbers);
-                            inner(records::load_by_number(Pulp::<S, $ty>::new(simd), numbers, run))
-                        }
-                    )
-                }
-            }
-            #[inline(always)]
-            unsafe fn store_block_run<S: Simd>(simd: S, values: [S::$register; QUAD], first: *mut $ty) {
-                // SAFETY: the caller makes the promise of the functions called.
-                unsafe {
-                    on_native!(
-                        simd,
-                        |set| records::native::$store_v4(set, as_registers(values), first),
-                        records::native::$store_v3(set, as_registers(values), first),
-                        {
-                            let (numbers, values) = (block::<$ty>(), wrapped(simd, values));
-                            let run = RecordPlaces::run(first, numbers);
-                            records::store_by_number(Pulp::<S, $ty>::new(simd), numbers, values, run);
-                        }
-                    )
-                }
-            }
-            #[inline(always)]
-            unsafe fn load_quad_run<S: Simd>(simd: S, first: *const $ty) -> [S::$register; QUAD] {
-                // SAFETY: the caller makes the promise of the functions called.
-                unsafe {
-                    on_native!(
-                        simd,
-                        |set| as_registers(records::native::$quads_v4(set, first)),
-                        as_registers(records::native::$quads_v3(set, first)),
-                        {
-                            let run = RecordPlaces::run(first.cast_mut(), QUAD);
-                            inner(records::load_by_number(Pulp::<S, $ty>::new(simd), QUAD, run))
-                        }
-                    )
-                }
-            }
-            #[inline(always)]
-            unsafe fn add_quads<S: Simd>(
-                simd: S,
-                count: usize,
-                [added, subtracted]: [[S::$register; QUAD]; 2],
-                quads: [RecordPlaces<'_, $ty>; 2],
-            ) {
-                // SAFETY: the caller makes the promise of the functions called.
-                unsafe {
-                    on_native!(
-                        simd,
-                        |set| records::native::$add_v4(
-                            set,
-                            count,
-                            [as_registers(added), as_registers(subtracted)],
-                            quads
-                        ),
-                        records::native::$add_v3(
-                            set,
-                            count,
-                            [as_registers(added), as_registers(subtracted)],
-                            quads
-                        ),
-                        {
-                            let values = [wrapped(simd, added), wrapped(simd, subtracted)];
-                            records::add_by_number(Pulp::<S, $ty>::new(simd), count, values, quads);
-                        }
-                    )
-                }
-            }
         }
     };
 }
@@ -366,14 +186,10 @@ macro_rules! pulp_element {
 pulp_element!(
     f64, f64s, m64s, F64_LANES, 8, splat_f64s add_f64s sub_f64s mul_f64s div_f64s min_f64s max_f64s sqrt_f64s abs_f64s
     less_than_f64s less_than_or_equal_f64s equal_f64s select_f64s and_m64s not_m64s first_true_m64s _mm256_movemask_pd b8
-    load_blocks_f64_v4 load_block_run_f64_v4 store_block_run_f64_v4 load_quad_run_f64_v4 add_quads_f64_v4
-    load_blocks_f64_v3 load_block_run_f64_v3 store_block_run_f64_v3 load_quad_run_f64_v3 add_quads_f64_v3
 );
 pulp_element!(
     f32, f32s, m32s, F32_LANES, 16, splat_f32s add_f32s sub_f32s mul_f32s div_f32s min_f32s max_f32s sqrt_f32s abs_f32s
     less_than_f32s less_than_or_equal_f32s equal_f32s select_f32s and_m32s not_m32s first_true_m32s _mm256_movemask_ps b16
-    load_blocks_f32_v4 load_block_run_f32_v4 store_block_run_f32_v4 load_quad_run_f32_v4 add_quads_f32_v4
-    load_blocks_f32_v3 load_block_run_f32_v3 store_block_run_f32_v3 load_quad_run_f32_v3 add_quads_f32_v3
 );
 
 /// Converts a value to another type of the same size if the types allow it: `pulp` has no such instruction for all its sets.
@@ -397,12 +213,14 @@ fn as_registers<A: Copy, B: Copy>(registers: [A; QUAD]) -> [B; QUAD] {
 }
 
 /// Registers of `pulp` inside.
+#[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn inner<S: Simd, T: PulpElement>([x, y, u, v]: [PulpRegister<S, T>; QUAD]) -> [T::V<S>; QUAD] {
     [x.1, y.1, u.1, v.1]
 }
 
 /// Registers of `pulp` with the token of their instruction set.
+#[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn wrapped<S: Simd, T: PulpElement>(simd: S, [x, y, u, v]: [T::V<S>; QUAD]) -> [PulpRegister<S, T>; QUAD] {
     [PulpRegister(simd, x), PulpRegister(simd, y), PulpRegister(simd, u), PulpRegister(simd, v)]
@@ -492,8 +310,19 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
     }
     #[inline(always)]
     unsafe fn near_pairs(self, own: *const u32, offset: u32, other: *const u32, limit: i32) -> u64 {
-        // SAFETY: the caller makes the same promise.
-        unsafe { T::near_pairs(self.simd, own, offset, other, limit) }
+        // SAFETY: the caller makes the same promise; lanes of single precision are as wide as pairs.
+        unsafe {
+            #[cfg(target_arch = "x86_64")]
+            if T::BYTES == size_of::<u32>() {
+                if let Some(v4) = same_value::<S, pulp::x86::V4>(self.simd) {
+                    return coordinates::native::near_pairs_v4(v4, own, offset, other, limit);
+                }
+                if let Some(v3) = same_value::<S, pulp::x86::V3>(self.simd) {
+                    return coordinates::native::near_pairs_v3(v3, own, offset, other, limit);
+                }
+            }
+            coordinates::near_pairs::<Self>(own, offset, other, limit)
+        }
     }
     #[inline(always)]
     unsafe fn touching_pairs(
@@ -503,37 +332,87 @@ impl<S: Simd, T: PulpElement> Registers for Pulp<S, T> {
         other: [*const u32; 2],
         beyond: u32,
     ) -> u64 {
-        // SAFETY: the caller makes the same promise.
-        unsafe { T::touching_pairs(self.simd, own, offset, other, beyond) }
+        // SAFETY: the caller makes the same promise; lanes of single precision are as wide as pairs.
+        unsafe {
+            #[cfg(target_arch = "x86_64")]
+            if T::BYTES == size_of::<u32>() {
+                if let Some(v4) = same_value::<S, pulp::x86::V4>(self.simd) {
+                    return coordinates::native::touching_pairs_v4(v4, own, offset, other, beyond);
+                }
+                if let Some(v3) = same_value::<S, pulp::x86::V3>(self.simd) {
+                    return coordinates::native::touching_pairs_v3(v3, own, offset, other, beyond);
+                }
+            }
+            coordinates::touching_pairs::<Self>(own, offset, other, beyond)
+        }
     }
     #[inline(always)]
     unsafe fn load_blocks(self, places: RecordPlaces<'_, T>) -> [Self::V; QUAD] {
-        // SAFETY: the caller makes the same promise.
-        wrapped(self.simd, unsafe { T::load_blocks(self.simd, places) })
+        // SAFETY: the caller makes the same promise; T is the precision of the function called.
+        unsafe {
+            on_native!(
+                self,
+                records::native::[load_blocks_f64_v4 load_blocks_f64_v3 load_blocks_f32_v4 load_blocks_f32_v3](places.cast()),
+                |loaded| wrapped(self.simd, as_registers(loaded)),
+                records::load_by_number(self, block::<T>(), places)
+            )
+        }
     }
     #[inline(always)]
     unsafe fn load_block_run(self, first: *const T) -> [Self::V; QUAD] {
-        // SAFETY: the caller makes the same promise.
-        wrapped(self.simd, unsafe { T::load_block_run(self.simd, first) })
+        // SAFETY: as above.
+        unsafe {
+            on_native!(
+                self,
+                records::native::[load_block_run_f64_v4 load_block_run_f64_v3 load_quad_run_f32_v4 load_quad_run_f32_v3](first.cast()),
+                |loaded| wrapped(self.simd, as_registers(loaded)),
+                records::load_by_number(self, block::<T>(), RecordPlaces::run(first.cast_mut(), block::<T>()))
+            )
+        }
     }
     #[inline(always)]
     unsafe fn store_block_run(self, values: [Self::V; QUAD], first: *mut T) {
-        // SAFETY: the caller makes the same promise.
-        unsafe { T::store_block_run(self.simd, inner(values), first) }
+        // SAFETY: as above.
+        unsafe {
+            on_native!(
+                self,
+                records::native::[store_block_run_f64_v4 store_block_run_f64_v3 store_block_run_f32_v4 store_block_run_f32_v3](
+                    as_registers(inner(values)), first.cast()
+                ),
+                |stored| stored,
+                records::store_by_number(self, block::<T>(), values, RecordPlaces::run(first, block::<T>()))
+            )
+        }
     }
     #[inline(always)]
     unsafe fn load_quad_run(self, first: *const T) -> [Self::V; QUAD] {
-        // SAFETY: the caller makes the same promise.
-        wrapped(self.simd, unsafe { T::load_quad_run(self.simd, first) })
+        // SAFETY: as above.
+        unsafe {
+            on_native!(
+                self,
+                records::native::[load_quad_run_f64_v4 load_quad_run_f64_v3 load_quad_run_f32_v4 load_quad_run_f32_v3](first.cast()),
+                |loaded| wrapped(self.simd, as_registers(loaded)),
+                records::load_by_number(self, QUAD, RecordPlaces::run(first.cast_mut(), QUAD))
+            )
+        }
     }
     #[inline(always)]
     unsafe fn add_quads(
         self,
         count: usize,
         [added, subtracted]: [[Self::V; QUAD]; 2],
-        quads: [RecordPlaces<'_, T>; 2],
+        [own, partner]: [RecordPlaces<'_, T>; 2],
     ) {
-        // SAFETY: the caller makes the same promise.
-        unsafe { T::add_quads(self.simd, count, [inner(added), inner(subtracted)], quads) }
+        // SAFETY: as above.
+        unsafe {
+            on_native!(
+                self,
+                records::native::[add_quads_f64_v4 add_quads_f64_v3 add_quads_f32_v4 add_quads_f32_v3](
+                    count, [as_registers(inner(added)), as_registers(inner(subtracted))], [own.cast(), partner.cast()]
+                ),
+                |done| done,
+                records::add_by_number(self, count, [added, subtracted], [own, partner])
+            )
+        }
     }
 }

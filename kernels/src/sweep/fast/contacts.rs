@@ -22,7 +22,7 @@
 
 use super::pairs::{DiscPair, PairSequence};
 use super::records::{ENTRIES, MOST_BLOCKS, RecordEntry, StateRecords};
-use crate::backend::{GROUP, QUAD, RecordPlaces, RegisterTask, block};
+use crate::backend::{GROUP, QUAD, RecordPlaces, RegisterTask, block, registers_of};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector, is_same_storage};
 use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
@@ -201,16 +201,7 @@ unsafe fn load_converted<R: Registers, S: Element>(
             column[lane] = R::Lane::from_f64(number.to_f64());
         }
     }
-    let [x, y, u, v] = &columns;
-    // SAFETY: each column has GROUP entries, and LANES <= GROUP.
-    unsafe {
-        [
-            registers.load(x.as_ptr()),
-            registers.load(y.as_ptr()),
-            registers.load(u.as_ptr()),
-            registers.load(v.as_ptr()),
-        ]
-    }
+    registers_of(registers, &columns)
 }
 
 #[inline(always)]

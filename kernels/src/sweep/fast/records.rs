@@ -84,8 +84,7 @@ pub struct StateRecords<S> {
 }
 
 impl<S: Element> StateRecords<S> {
-    /// Records of zeros, with velocities in a unit of time of which `per_time` is one over it. `alignment` numbers the first
-    /// column.
+    /// Records of zeros. `per_time` is one over the unit of time of velocities; `alignment` numbers the first column.
     #[inline]
     pub fn zeros(alignment: usize, discs: usize, [rotate, vary]: [bool; 2], per_time: f64) -> Self {
         let entries = if vary { ENTRIES } else { 4 + 2 * usize::from(rotate) };

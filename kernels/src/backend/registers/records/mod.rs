@@ -49,6 +49,13 @@ impl<'a, T> RecordPlaces<'a, T> {
         RecordPlaces { first, stride, records: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15] }
     }
 
+    /// Records of the same places as numbers of another type.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(in crate::backend) fn cast<U>(self) -> RecordPlaces<'a, U> {
+        RecordPlaces { first: self.first.cast(), stride: self.stride, records: self.records }
+    }
+
     /// The record of a lane.
     ///
     /// # Safety
@@ -63,7 +70,7 @@ impl<'a, T> RecordPlaces<'a, T> {
 /// Loads records of up to four numbers, number by number; the other registers are zero.
 ///
 /// # Safety
-/// Every lane's record has so many initialised numbers.
+/// Every lane's record has at least `numbers` initialised numbers.
 #[inline(always)]
 pub(in crate::backend) unsafe fn load_by_number<R: Registers>(
     registers: R,
@@ -77,7 +84,15 @@ pub(in crate::backend) unsafe fn load_by_number<R: Registers>(
             column[lane] = unsafe { *places.at(lane).add(k) };
         }
     }
-    let [x, y, u, v] = &columns;
+    registers_of(registers, &columns)
+}
+
+/// Registers with the first numbers of four columns.
+#[inline(always)]
+pub(crate) fn registers_of<R: Registers>(
+    registers: R,
+    [x, y, u, v]: &[[R::Lane; MAX_LANES]; QUAD],
+) -> [R::V; QUAD] {
     // SAFETY: every column has MAX_LANES >= LANES entries.
     unsafe {
         [
@@ -106,7 +121,7 @@ fn spilled<R: Registers>(registers: R, [x, y, u, v]: [R::V; QUAD]) -> [[R::Lane;
 /// Stores records of up to four numbers, number by number.
 ///
 /// # Safety
-/// Every lane's record has space for so many numbers.
+/// Every lane's record has space for `numbers` numbers.
 #[inline(always)]
 pub(in crate::backend) unsafe fn store_by_number<R: Registers>(
     registers: R,

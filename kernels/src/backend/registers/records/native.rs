@@ -405,7 +405,3 @@ pub(in crate::backend) unsafe fn store_block_run_f32_v3(v3: V3, values: [__m256;
         _mm_storeu_ps(first.add(28), q[7]);
     }
 }
-
-pub(in crate::backend) use {
-    load_quad_run_f32_v3 as load_block_run_f32_v3, load_quad_run_f32_v4 as load_block_run_f32_v4,
-};

@@ -22,7 +22,7 @@
 //!   because their number cannot be predicted.
 
 use super::codes::{PackedCandidate, half_mask_offset, offset_count};
-use super::occupancy::{FARTHEST, Occupancy};
+use super::occupancy::Occupancy;
 use crate::GROUP;
 use crate::backend::Registers;
 use crate::backend::{RegisterTask, coordinate_pair};
@@ -65,8 +65,8 @@ impl DenseSearch<'_> {
     #[inline(always)]
     fn with<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(self, registers: R) {
         let DenseSearch { occupancy, slack, rows, cursor, full, found } = self;
-        // Where radii vary, coordinates beyond the sum of both; else the square of the limit.
-        let limit = if VARY { occupancy.beyond(slack).min(FARTHEST) as i32 } else { occupancy.limit(slack) };
+        let beyond = coordinate_pair(occupancy.beyond(slack) as i16, 0);
+        let limits = (occupancy.limit(slack), beyond);
         let shape = occupancy.shape();
         let stride = shape.stride();
         let positions = occupancy.positions();
@@ -94,7 +94,7 @@ impl DenseSearch<'_> {
                     // columns have as many entries (asserted above).
                     let near = unsafe {
                         let own = [positions.add(base), radii.add(base)];
-                        compare::<R, H, VARY>(registers, own, stride, &offsets, limit)
+                        compare::<R, H, VARY>(registers, own, stride, &offsets, limits)
                     };
                     for (word, near) in near.into_iter().take(const { word_count(H) }).enumerate() {
                         let own = own * 0x0001_0001_0001_0001;
@@ -118,14 +118,14 @@ const MOST: usize = offset_count(3);
 /// Finds the discs of a group that are near the disc at each offset: 16 bits per offset.
 ///
 /// # Safety
-/// The pointers are to the own cells of a group, positions and reaches, and every cell of it exists at every offset.
+/// The pointers are to the own cells of a group, positions and radii, and every cell of it exists at every offset.
 #[inline(always)]
 unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
     registers: R,
     [positions, radii]: [*const u32; 2],
     stride: usize,
     offsets: &[u32; MOST],
-    limit: i32,
+    (limit, beyond): (i32, u32),
 ) -> [u64; 6] {
     let mut near = [0; 6];
     let mut part = 0;
@@ -141,10 +141,8 @@ unsafe fn compare<R: Registers<Lane = f32>, const H: usize, const VARY: bool>(
                     let touch = unsafe {
                         let (own, other) = (positions.add(part), positions.offset(shift));
                         if VARY {
-                            let reaches = (radii.add(part), radii.offset(shift));
-                            {
- let beyond = coordinate_pair(limit as i16, 0);
- registers.touching_pairs([own, reaches.0], offsets[$number], [other, reaches.1], beyond) }
+                            let [own, other] = [[own, radii.add(part)], [other, radii.offset(shift)]];
+                            registers.touching_pairs(own, offsets[$number], other, beyond)
                         } else {
                             registers.near_pairs(own, offsets[$number], other, limit)
                         }

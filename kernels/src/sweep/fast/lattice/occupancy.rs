@@ -19,7 +19,7 @@ const REACH: f64 = 8192.0;
 
 /// Largest distance of an own disc from the centre of a partner's cell. The difference to a partner's position then fits 16 bits,
 /// and an empty cell is farther away than a contact.
-pub(super) const FARTHEST: f64 = 24_000.0;
+const FARTHEST: f64 = 24_000.0;
 
 /// Coordinates by which a distance may be too large after rounding: half of one for each of two positions and an offset, along both
 /// axes.
@@ -346,7 +346,7 @@ impl Occupancy {
     /// Coordinates beyond the contact distance at which a pair is found that may be farther apart than a contact by a fraction of it.
     #[inline]
     pub(super) fn beyond(&self, slack: f64) -> f64 {
-        (self.reach * self.unit * slack + ROUNDING).ceil()
+        (self.reach * self.unit * slack + ROUNDING).ceil().min(FARTHEST)
     }
 
     /// Square of the coordinates within which such a pair of the largest discs is found.
