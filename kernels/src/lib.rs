@@ -107,5 +107,5 @@ pub(crate) use backend::GROUP;
 pub use backend::InstructionSet;
 pub use program::{Execution, Program, Runnable};
 pub use threads::{
-    in_parts, in_pieces, keep_awake, over_parts, over_pieces, reorder_into, reordered, single_threaded_if,
+    in_pieces, keep_awake, over_parts, over_pieces, reorder_into, reordered, single_threaded_if,
 };

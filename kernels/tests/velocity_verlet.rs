@@ -121,7 +121,7 @@ fn by_passes(state: &State, dt: f64, gravity: [f64; 2], steps: u64) -> [[Vec<f64
         let corrected = |disc: usize| {
             let [r, v] = [0, 1].map(|k| entry(&records, freedom, k, disc));
             let predicted = [r, v, 0.0, 0.0, 0.0, 0.0];
-            motion.corrected((steps, disc as u32), freedom, predicted, sums.of(disc)[freedom], inverse)
+            motion.corrected(freedom, predicted, sums.of(disc)[freedom], inverse, f64::NAN)
         };
         [0, 1].map(|k| (0..discs).map(|disc| corrected(disc)[k]).collect())
     })

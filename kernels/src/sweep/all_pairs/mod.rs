@@ -23,7 +23,7 @@ mod tile;
 
 use crate::backend::{GROUP, InstructionSet, Precision, dispatch_estimating, dispatch_native};
 use crate::isa::ProgramError;
-use crate::isa::Storage;
+use crate::isa::{AlignedColumn, Storage};
 use crate::law::{self, Law, ParticleField};
 use crate::threads::{on_threads, pieces, single_threaded_if};
 use std::array::from_fn;
@@ -35,6 +35,9 @@ pub const BANDS: usize = 32;
 
 /// Least number of groups in a band.
 const SMALLEST_BAND: usize = 4;
+
+/// Alignment number of a band's first sum; columns of bodies have smaller ones.
+const FIRST_SUM: usize = 10;
 
 /// Largest number of bodies for one thread: waking others takes some ten microseconds, and so do these pairs.
 const ALONE: usize = 512;
@@ -106,7 +109,7 @@ pub fn padding_position<P: Precision>(n: usize) -> P {
 struct TriangleBand<P, const SUMS: usize> {
     groups: Range<usize>,
     /// For each sum, one entry per body from the band's first on.
-    sums: [Vec<P>; SUMS],
+    sums: [AlignedColumn<P>; SUMS],
     /// Energy and virial.
     energy: [f64; 2],
     /// True if it was interrupted.
@@ -129,7 +132,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
             let behind = (groups - rows.start) * GROUP;
             TriangleBand {
                 groups: rows,
-                sums: from_fn(|_| vec![P::default(); behind]),
+                sums: from_fn(|sum| AlignedColumn::zeros(FIRST_SUM + sum, behind)),
                 energy: [0.0; 2],
                 is_stopped: false,
             }
@@ -169,14 +172,14 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
 
     /// Sums of a band, each with one entry per body from the band's first on, and its energy and virial.
     #[inline]
-    pub fn band(&self, number: usize) -> (&[Vec<P>; SUMS], [f64; 2]) {
+    pub fn band(&self, number: usize) -> (&[AlignedColumn<P>; SUMS], [f64; 2]) {
         let TriangleBand { sums, energy, .. } = &self.bands[number];
         (sums, *energy)
     }
 
     /// Mutable sums of a band, for results computed elsewhere.
     #[inline]
-    pub fn band_mut(&mut self, number: usize) -> (&mut [Vec<P>; SUMS], &mut [f64; 2]) {
+    pub fn band_mut(&mut self, number: usize) -> (&mut [AlignedColumn<P>; SUMS], &mut [f64; 2]) {
         let TriangleBand { sums, energy, .. } = &mut self.bands[number];
         (sums, energy)
     }
@@ -221,7 +224,7 @@ impl<P: Precision, const SUMS: usize> AllPairs<P, SUMS> {
         let done = on_threads(bands.iter_mut(), |band| {
             band.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
             (band.energy, band.is_stopped) = ([0.0; 2], false);
-            let sums = band.sums.each_mut().map(Vec::as_mut_slice);
+            let sums = band.sums.each_mut().map(|sums| &mut **sums);
             let (energy, is_stopped) = (&mut band.energy, &mut band.is_stopped);
             let work = BandRows {
                 law,

@@ -106,8 +106,9 @@ type LaneArray<T> = [T; GROUP];
 /// Entries of the records of one register of discs; those of blocks that the law does not read are zero.
 type RecordRegisters<R> = [<R as Registers>::V; ENTRIES];
 
-/// Environment of a law that evaluates one register of pairs.
-struct GatherEnv<R: Registers> {
+/// Environment of a law that evaluates one register of pairs. `PLAIN` where neither energy nor dissipation is asked for: their code and
+/// registers are gone.
+struct GatherEnv<R: Registers, const PLAIN: bool> {
     registers: R,
     own: RecordRegisters<R>,
     partner: RecordRegisters<R>,
@@ -123,7 +124,7 @@ struct GatherEnv<R: Registers> {
     partner_sums: [Cell<R::V>; 3],
 }
 
-impl<R: Registers> GatherEnv<R> {
+impl<R: Registers, const PLAIN: bool> GatherEnv<R, PLAIN> {
     #[inline(always)]
     fn field(&self, field: ParticleField, records: &RecordRegisters<R>) -> R::V {
         let Some(entry) = RecordEntry::of_field(field) else {
@@ -212,7 +213,7 @@ fn spill<R: Registers>(registers: R, value: R::V) -> LaneArray<R::Lane> {
     lanes
 }
 
-impl<R: Registers> Env<2> for &GatherEnv<R> {
+impl<R: Registers, const PLAIN: bool> Env<2> for &GatherEnv<R, PLAIN> {
     type V = R::V;
     type Partner = ();
     const BOTH_PARTNERS: bool = true;
@@ -261,7 +262,7 @@ impl<R: Registers> Env<2> for &GatherEnv<R> {
     }
     #[inline(always)]
     fn counts_dissipation(self) -> bool {
-        self.asked.dissipation
+        !PLAIN && self.asked.dissipation
     }
     #[inline(always)]
     fn dissipate(self, power: R::V) {
@@ -269,7 +270,7 @@ impl<R: Registers> Env<2> for &GatherEnv<R> {
     }
     #[inline(always)]
     fn observes_energy(self) -> bool {
-        self.asked.energy
+        !PLAIN && self.asked.energy
     }
     #[inline(always)]
     fn energy(self, energy: R::V) {
@@ -295,8 +296,14 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
         let law = self.law.clone();
         let mut notes = std::mem::take(self.notes);
         let mut first = 0;
+        if !self.asked.dissipation && !self.asked.energy {
+            while first < self.pairs.count() {
+                self.evaluate_register::<R, true>(registers, &law, first, &mut notes);
+                first += R::LANES;
+            }
+        }
         while first < self.pairs.count() {
-            self.evaluate_register::<R>(registers, &law, first, &mut notes);
+            self.evaluate_register::<R, false>(registers, &law, first, &mut notes);
             first += R::LANES;
         }
         *self.notes = notes;
@@ -305,7 +312,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> RegisterTask<P> fo
 
 impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P, L, Q> {
     #[inline(always)]
-    fn evaluate_register<R: Registers<Lane = P>>(
+    fn evaluate_register<R: Registers<Lane = P>, const PLAIN: bool>(
         &self,
         registers: R,
         law: &L,
@@ -337,7 +344,7 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P,
             )
         };
         let zero = || Cell::new(registers.splat(P::default()));
-        let gathered = GatherEnv {
+        let gathered = GatherEnv::<R, PLAIN> {
             registers,
             own: own_record,
             partner: partner_record,
@@ -370,10 +377,10 @@ impl<S: Element, P: Precision, L: Law<2>, Q: PairSequence<P>> Evaluate<'_, S, P,
         // that this thread sweeps, partners in these or those ahead of them: no other thread adds to either at this stage.
         unsafe { registers.add_quads(count, [added, subtracted], places) };
         // Pair by pair. Two touching fixed discs have no effective mass; any other pair without a finite force is listed below.
-        if self.asked.dissipation {
+        if !PLAIN && self.asked.dissipation {
             add(&spill(registers, gathered.power.get()), count, &mut notes.dissipated);
         }
-        if self.asked.energy {
+        if !PLAIN && self.asked.energy {
             let [energy, virial] = &mut notes.energy;
             add(&spill(registers, gathered.energy[0].get()), count, energy);
             add(&spill(registers, gathered.energy[1].get()), count, virial);

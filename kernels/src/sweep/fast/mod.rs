@@ -47,6 +47,6 @@ pub use finder::{Finder, RankShare, RowLayout, SearchCursor};
 pub use grid::{CellGrid, GridError};
 pub use motion::EquationOfMotion;
 pub use pairs::{CellOffset, PairBuffer, PairSequence, SENTINELS};
-pub use records::{ForceRecords, RecordEntry, StateRecords};
+pub use records::{ForceRecords, RecordEntry, RecordPart, StateRecords};
 pub use sectors::Sectors;
 pub use verlet::VerletList;

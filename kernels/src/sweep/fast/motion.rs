@@ -29,7 +29,7 @@ impl<C: Scheme> EquationOfMotion<C> {
 
     /// Draws the random numbers of some discs along x and y, in the pass that corrects the step numbered `step`.
     #[inline(always)]
-    pub(super) fn draw<S: Element>(&self, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
+    pub fn draw<S: Element>(&self, step: u64, ids: &[u32], to: [&mut [S]; 2]) {
         let NoiseSource { seed, parts } = self.noise;
         let first = match C::DRAWS {
             Draws::Never => return,
@@ -57,22 +57,18 @@ impl<C: Scheme> EquationOfMotion<C> {
         }
     }
 
-    /// Returns one degree of freedom of the disc `id`, corrected in the step numbered `step`. Inputs are the predicted row (its
-    /// first [`Scheme::CARRIED`] entries), the force and the inverse mass or moment of inertia.
+    /// Returns one degree of freedom of a disc, corrected. Inputs are the predicted row (its first [`Scheme::CARRIED`] entries), the
+    /// force, the inverse mass or moment of inertia, and the random number of a scheme that draws in its corrector.
     #[inline]
     pub fn corrected<S: Element>(
         &self,
-        (step, id): (u64, u32),
         freedom: usize,
         predicted: [S; DERIVATIVES],
         force: S,
         inverse: S,
+        normal: S,
     ) -> [S; DERIVATIVES] {
-        let [mut x, mut y] = [[S::from_f64(f64::NAN)]; 2];
-        if C::DRAWS == Draws::InCorrector {
-            self.draw(step, &[id], [&mut x, &mut y]);
-        }
-        let context = self.context(Scalar::<S>::default(), inverse, [x, y, y][freedom][0]);
+        let context = self.context(Scalar::<S>::default(), inverse, normal);
         let mut row = predicted;
         let acceleration =
             acceleration(|value| context.uniform(value), self.gravity, freedom, force, inverse);

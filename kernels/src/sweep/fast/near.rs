@@ -2,15 +2,15 @@
 
 use super::finder::{AT_ONCE, MARGIN, SearchCursor};
 use super::grid::CellGrid;
-use super::pairs::{CandidatePair, PairBuffer, cell_offset};
-use super::records::StateRecords;
+use super::pairs::{CandidatePair, DiscPair, PairBuffer, cell_offset};
+use super::records::{RecordPositions, StateRecords};
 use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
 
 /// Lists those of the given pairs that are nearer than a limit.
 pub(super) struct DistanceFilter<'a, S> {
-    discs: &'a StateRecords<S>,
+    positions: RecordPositions<'a, S>,
     cell_offsets: [[f64; 2]; 5],
     limit: f64,
     touches: &'a mut Vec<CandidatePair>,
@@ -34,7 +34,7 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         touches.pairs.clear();
         touches.cell_offsets.clear();
         touches.cell_offsets.extend(cell_offsets.map(cell_offset));
-        DistanceFilter { discs, cell_offsets, limit, touches: &mut touches.pairs }
+        DistanceFilter { positions: discs.positions(), cell_offsets, limit, touches: &mut touches.pairs }
     }
 
     /// Searches rows piece by piece (`pieces` of a row) until enough pairs are listed.
@@ -66,7 +66,30 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
     #[inline(always)]
     pub(super) unsafe fn disc_position(&self, disc: u32) -> [f64; 2] {
         // SAFETY: the caller promises a disc, and every disc has a record, as `new` has checked.
-        unsafe { self.discs.position_unchecked(disc) }
+        unsafe { self.positions.of(disc) }
+    }
+
+    /// Lists those of some pairs, given with the numbers of their cell offsets, that are near enough. The number of listed pairs stays in a register,
+    /// while [`list_if_near`](Self::list_if_near) stores it for every pair.
+    ///
+    /// # Safety
+    /// The pairs are of discs, and every cell offset is below 5.
+    #[inline(always)]
+    pub(super) unsafe fn list_those_near(&mut self, pairs: impl ExactSizeIterator<Item = (DiscPair, usize)>) {
+        self.touches.reserve(pairs.len());
+        let (to, mut length) = (self.touches.as_mut_ptr(), self.touches.len());
+        for (discs, cell_offset) in pairs {
+            // SAFETY: the caller promises discs, and a cell offset below 5, the length of `cell_offsets`.
+            let ([here, there], along) = unsafe {
+                (discs.map(|disc| self.disc_position(disc)), *self.cell_offsets.get_unchecked(cell_offset))
+            };
+            let (dx, dy) = ((here[0] - there[0]) - along[0], (here[1] - there[1]) - along[1]);
+            // SAFETY: `reserve` has left capacity for all pairs.
+            unsafe { to.add(length).write(CandidatePair { discs, cell_offset: cell_offset as u32 }) };
+            length += usize::from(dx * dx + dy * dy < self.limit);
+        }
+        // SAFETY: everything below `length` has been written.
+        unsafe { self.touches.set_len(length) };
     }
 
     /// Lists a pair if it is near enough.

@@ -162,11 +162,12 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
             |near, row, along| {
                 let Range { start, end } = pairs_of(row);
                 let first = start + along * SOME;
-                for &[disc, partner] in &self.pairs[first..(first + SOME).min(end)] {
-                    let (second, cell_offset) = (partner & ((1 << DISC) - 1), (partner >> DISC) as usize);
-                    // SAFETY: both are members of sectors and so discs, and `pairs_of_row` numbered the cell offset, below 5.
-                    unsafe { near.list_if_near(disc, near.disc_position(disc), second, cell_offset) };
-                }
+                let some = self.pairs[first..(first + SOME).min(end)].iter();
+                let some = some.map(|&[disc, partner]| {
+                    ([disc, partner & ((1 << DISC) - 1)], (partner >> DISC) as usize)
+                });
+                // SAFETY: both are members of sectors and so discs, and `pairs_of_row` numbered the cell offset, below 5.
+                unsafe { near.list_those_near(some) };
             },
         );
         Ok(())

@@ -3,6 +3,7 @@
 use super::format::ForeignFormat;
 use crate::io::trajectory::TrajectoryError;
 use crate::number::count_with_noun;
+use crate::particles::MOST_PARTICLES;
 use crate::quoted::{self, quoted};
 use std::fmt;
 use std::io;
@@ -56,6 +57,14 @@ pub enum XyzMistakeKind {
         found: String,
         /// Line of the previous frame's count, which may be too small.
         previous: Option<usize>,
+    },
+    /// More particles than can be numbered.
+    #[error(
+        "a frame of {found} discs; expected at most {MOST_PARTICLES}, as searches number them with 29 bits"
+    )]
+    TooMany {
+        /// Number of discs that the frame announces.
+        found: usize,
     },
     /// The file ends within a frame.
     #[error(

@@ -4,7 +4,7 @@ use super::error::{Mistake, XyzMistakeKind, XyzMistakeList, XyzReadError};
 use super::format::ForeignFormat;
 use super::{FrameContents, ParticleFrame, header};
 use crate::io::regular_file;
-use crate::particles::Particles;
+use crate::particles::{MOST_PARTICLES, Particles};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -208,10 +208,16 @@ impl<R: BufRead> RawFrames<R> {
             return Ok(None);
         }
         let text = utf8(line, self.line)?.trim();
-        text.parse().map(Some).map_err(|_| {
-            let found = text.chars().take(60).collect();
-            Mistake::in_line(self.line, XyzMistakeKind::Count { found, previous: self.previous })
-        })
+        match text.parse() {
+            Ok(found) if found > MOST_PARTICLES => {
+                Err(Mistake::in_line(self.line, XyzMistakeKind::TooMany { found }))
+            }
+            Ok(count) => Ok(Some(count)),
+            Err(_) => {
+                let found = text.chars().take(60).collect();
+                Err(Mistake::in_line(self.line, XyzMistakeKind::Count { found, previous: self.previous }))
+            }
+        }
     }
 
     fn append_line(&mut self, text: &mut Vec<u8>) -> Result<usize, Mistake> {

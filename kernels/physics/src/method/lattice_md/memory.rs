@@ -50,8 +50,8 @@ pub fn foreseen(checked: &CheckedGranularScene) -> MemoryForecast {
     // resumed run has read one column more than it has restored, and its cells are searched; the system does not reclaim a frame's size at once.
     let frame = DISC * of.discs;
     let resumed = columns + frame + (8.0 + 40.0) * of.discs + of.lists_resumed(contacts(checked));
-    // Particle copies are built one degree of freedom after the other.
-    let standing = 2.0 * frame + (2.0 * 8.0 + 4.0) * of.discs;
+    // Particles are copied while the frame before is written; beside them are the indices in memory.
+    let standing = 2.0 * frame + 4.0 * of.discs;
     let moments = [standing, frame + observed, frame + columns, resumed];
     MemoryForecast {
         needed: (kept + engine + moments.into_iter().fold(0.0, f64::max)) as u64,

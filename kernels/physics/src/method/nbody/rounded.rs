@@ -2,6 +2,8 @@
 
 use super::bodies::{PointMasses, StateColumns};
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::AlignedColumn;
+use stripmine_kernels::isa::aligned_column::column_memory;
 use stripmine_kernels::sweep::all_pairs::{self, is_split, padding_position};
 
 /// Distance from the mean, in units of length, beyond which bodies count as escaped. Escaped bodies must not move the origin to where
@@ -86,32 +88,37 @@ pub(super) struct RoundedBodies<P> {
     pub(super) units: SweepUnits,
     /// Number of bodies, and of entries including padding.
     sizes: [usize; 2],
-    pub(super) position: [Vec<P>; 3],
+    pub(super) position: [AlignedColumn<P>; 3],
     /// Remainder of the positions after rounding to single precision; empty in double precision.
-    pub(super) rest: [Vec<P>; 3],
-    pub(super) velocity: [Vec<P>; 3],
-    pub(super) mass: Vec<P>,
+    pub(super) rest: [AlignedColumn<P>; 3],
+    pub(super) velocity: [AlignedColumn<P>; 3],
+    pub(super) mass: AlignedColumn<P>,
 }
 
 impl<P: Precision> RoundedBodies<P> {
     /// Creates columns of `entries` bodies (padding included), repeated `times` times.
     pub(super) fn new(bodies: &PointMasses, entries: usize, times: usize) -> Self {
         let units = SweepUnits::of::<P>(bodies);
-        let all = || vec![P::default(); times * entries];
-        let rest = || if is_split::<P>() { all() } else { vec![] };
-        let mass: Vec<P> = bodies.mass[..entries].iter().map(|m| P::from_f64(m / units.mass)).collect();
+        let columns = |first: usize, entries: usize| {
+            [0, 1, 2].map(|axis| AlignedColumn::zeros(first + axis, times * entries))
+        };
+        let mass = bodies.mass[..entries].iter().map(|m| P::from_f64(m / units.mass));
+        let mass = (0..times).flat_map(|_| mass.clone());
         RoundedBodies {
             units,
             sizes: [bodies.len(), entries],
-            position: [all(), all(), all()],
-            rest: [rest(), rest(), rest()],
-            velocity: [all(), all(), all()],
-            mass: mass.repeat(times),
+            position: columns(0, entries),
+            rest: columns(3, if is_split::<P>() { entries } else { 0 }),
+            velocity: columns(6, entries),
+            mass: AlignedColumn::new(9, mass),
         }
     }
 
-    /// Memory of an entry in bytes.
-    pub(super) const BYTES: usize = (if is_split::<P>() { 10 } else { 7 }) * P::BYTES;
+    /// Memory of the columns in bytes.
+    pub(super) fn bytes(entries: usize, times: usize) -> usize {
+        let columns = if is_split::<P>() { 10 } else { 7 };
+        columns * column_memory((P::BYTES * entries * times) as f64) as usize
+    }
 
     /// Converts positions and, if given, velocities.
     pub(super) fn convert_bodies(&mut self, position: &StateColumns, velocity: Option<&StateColumns>) {
@@ -157,9 +164,9 @@ impl<P: Precision> RoundedBodies<P> {
     /// Borrows the columns as input of a sweep over all pairs.
     pub(super) fn bodies(&self) -> all_pairs::BodyColumns<'_, P> {
         all_pairs::BodyColumns {
-            position: self.position.each_ref().map(Vec::as_slice),
-            rest: self.rest.each_ref().map(Vec::as_slice),
-            velocity: self.velocity.each_ref().map(Vec::as_slice),
+            position: self.position.each_ref().map(|column| &**column),
+            rest: self.rest.each_ref().map(|column| &**column),
+            velocity: self.velocity.each_ref().map(|column| &**column),
             mass: &self.mass,
         }
     }

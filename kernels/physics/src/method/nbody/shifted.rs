@@ -114,8 +114,8 @@ impl<P: backend::Precision> ShiftedPrograms<P> {
     /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { program_bytes::<P, true>(count) } else { 0 };
-        let columns = 2 * RoundedBodies::<P>::BYTES + 6 * P::BYTES + size_of::<f64>();
-        count * columns + program_bytes::<P, false>(count) + rates
+        let columns = 6 * P::BYTES + size_of::<f64>();
+        RoundedBodies::<P>::bytes(count, 2) + count * columns + program_bytes::<P, false>(count) + rates
     }
 }
 

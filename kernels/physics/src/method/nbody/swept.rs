@@ -7,7 +7,7 @@ use crate::ranks::{RankError, numbers};
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend;
-use stripmine_kernels::isa::ProgramError;
+use stripmine_kernels::isa::{AlignedColumn, ProgramError};
 use stripmine_kernels::law::gravity::Gravity;
 use stripmine_kernels::sweep::all_pairs::{AllPairs, AllPairsOptions, Arithmetic, padded_length};
 
@@ -47,7 +47,9 @@ impl<P: backend::Precision> PairSweep<P> {
     /// Memory in bytes, with or without rates of the forces.
     pub(super) fn bytes(count: usize, has_rates: bool) -> usize {
         let rates = if has_rates { AllPairs::<P, 6>::bytes(count) } else { 0 };
-        padded_length(count) * (RoundedBodies::<P>::BYTES + 6 * P::BYTES)
+        let entries = padded_length(count);
+        RoundedBodies::<P>::bytes(entries, 1)
+            + entries * 6 * P::BYTES
             + AllPairs::<P, 3>::bytes(count)
             + rates
     }
@@ -108,8 +110,11 @@ impl<P: backend::Precision> PairSweep<P> {
 
     /// Sums of a band as numbers: energy and virial, then every force sum.
     pub(super) fn band(&self, number: usize, has_rates: bool) -> Vec<f64> {
-        fn of<P: backend::Precision>(sums: &[Vec<P>], energy: [f64; 2]) -> Vec<f64> {
-            energy.into_iter().chain(sums.iter().flatten().map(|sum| sum.to_f64())).collect()
+        fn of<P: backend::Precision>(sums: &[AlignedColumn<P>], energy: [f64; 2]) -> Vec<f64> {
+            energy
+                .into_iter()
+                .chain(sums.iter().flat_map(|sums| sums.iter()).map(|sum| sum.to_f64()))
+                .collect()
         }
         match self.rates.as_ref().filter(|_| has_rates) {
             None => {
@@ -144,10 +149,13 @@ impl<P: backend::Precision> PairSweep<P> {
                 (sums.as_mut_slice(), energy)
             }
         };
-        let count = energy.len() + sums.iter().map(Vec::len).sum::<usize>();
+        let count = energy.len() + sums.iter().map(|sums| sums.len()).sum::<usize>();
         let mut numbers = numbers(bytes, rank, count)?;
         energy.iter_mut().zip(numbers.by_ref()).for_each(|(energy, number)| *energy = number);
-        sums.iter_mut().flatten().zip(numbers).for_each(|(sum, number)| *sum = P::from_f64(number));
+        sums.iter_mut()
+            .flat_map(|sums| sums.iter_mut())
+            .zip(numbers)
+            .for_each(|(sum, number)| *sum = P::from_f64(number));
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! Loops compiled for each law and each scheme of a method. The engine calls them through one trait, so that the rest of it is compiled only once for
 //! each precision and search.
 
+use super::observing::{AT_A_TIME, StepEndRow};
 use super::search::PairSearch;
 use super::state::MovingDiscs;
 use super::{CarriedQuery, CarriedState, Dynamics, LawTask, PairSystem, PrescribedMotion, SchemeTask};
@@ -8,7 +9,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::Scheme;
+use stripmine_kernels::integrator::{Draws, Scheme};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Law, ObservationRequest};
 use stripmine_kernels::sweep::fast::{
@@ -26,7 +27,7 @@ pub(super) trait CompiledDynamics<S, P, Q>: Send + Sync {
     /// Advances some discs by one step.
     fn pass(&self, pass: PassArguments<'_, S, P, Q>) -> Result<PassReport, ProgramError>;
 
-    /// Corrects a degree of freedom of some discs.
+    /// Corrects some discs.
     fn correct(&self, discs: CorrectionArguments<'_, S, P>);
 
     /// Adds up the forces of all pairs.
@@ -106,29 +107,46 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SchemeTask for PassArgumen
     }
 }
 
-/// Arguments of the correction of a degree of freedom at the end of the step, from the rows left by the pass.
+/// Arguments of the correction of some discs at the end of the step, from the rows left by the pass.
 pub(super) struct CorrectionArguments<'a, S, P> {
     pub(super) system: &'a PairSystem,
     pub(super) state: &'a MovingDiscs<S>,
     pub(super) sums: &'a ForceRecords<P>,
     pub(super) steps: u64,
-    pub(super) freedom: usize,
-    pub(super) first: usize,
-    pub(super) to: [&'a mut [f64]; 2],
+    /// Number of discs that the pass has moved; the others stand as they are.
+    pub(super) moving: usize,
+    pub(super) discs: &'a [u32],
+    pub(super) to: &'a mut [StepEndRow],
 }
 
 impl<S: Precision, P: Precision> SchemeTask for CorrectionArguments<'_, S, P> {
     type Output = ();
 
     fn with<C: Scheme>(self, scheme: C) {
-        let CorrectionArguments { system, state, sums, steps, freedom, first, to: [values, rates] } = self;
+        let CorrectionArguments { system, state, sums, steps, moving, discs, to } = self;
         let motion = motion(system, scheme);
-        for (disc, (value, rate)) in (first..).zip(values.iter_mut().zip(rates)) {
-            let force = S::from_f64(sums.of(disc)[freedom].to_f64());
-            let inverse = system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom, disc));
-            let (who, row) = ((steps, state.id(disc)), state.row(freedom, disc));
-            let corrected = motion.corrected(who, freedom, row, force, inverse);
-            [*value, *rate] = state.value_and_rate(&corrected);
+        for (discs, to) in discs.chunks(AT_A_TIME).zip(to.chunks_mut(AT_A_TIME)) {
+            let mut normals = [[S::from_f64(f64::NAN); AT_A_TIME]; 2];
+            if C::DRAWS == Draws::InCorrector {
+                let mut ids = [0; AT_A_TIME];
+                ids.iter_mut().zip(discs).for_each(|(id, &disc)| *id = state.id(disc as usize));
+                motion.draw(steps, &ids[..discs.len()], normals.each_mut().map(|to| &mut to[..discs.len()]));
+            }
+            for (at, (&disc, to)) in discs.iter().zip(to).enumerate() {
+                let disc = disc as usize;
+                let forces = sums.of(disc);
+                for (freedom, to) in to.iter_mut().enumerate().take(system.freedoms) {
+                    let mut row = state.row(freedom, disc);
+                    if disc < moving {
+                        let force = S::from_f64(forces[freedom].to_f64());
+                        let inverse =
+                            system.inertia.inverse(freedom, S::from_f64, || state.inverse(freedom, disc));
+                        let normal = normals[freedom.min(1)][at];
+                        row = motion.corrected(freedom, row, force, inverse, normal);
+                    }
+                    *to = state.value_and_rate(&row);
+                }
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Pairwise engine: computes all forces, then corrects and predicts in one pass.
 
 use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, SweepArguments};
+use super::observing::StepEndRow;
 use super::search::{PairSearch, SearchCells};
 use super::state::{CellMove, Members, MovingDiscs};
 use super::{
@@ -157,11 +158,16 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.search.cells_mut().renumber(&order);
         self.state.renumber(&order);
         self.sums.renumber(&order);
-        self.search.make_lists(&self.state);
-        self.boundary_candidates = self.discs_near_open_sides();
+        self.make_lists();
         self.changes = 0;
         self.orders += 1;
         order
+    }
+
+    /// Makes the lists, if the search has some, and finds the discs near open sides.
+    pub(super) fn make_lists(&mut self) {
+        self.search.make_lists(&self.state);
+        self.boundary_candidates = self.discs_near_open_sides();
     }
 
     pub(super) fn advance_positions(&mut self) -> Result<Vec<u32>, PhysicsFailure> {
@@ -229,27 +235,12 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         self.sums.of(disc).map(|sum| sum.to_f64())
     }
 
-    /// Computes a degree of freedom and its rate for discs from `first` on at the end of the step. The state is not changed.
-    pub(super) fn correct(&self, freedom: usize, first: usize, [values, rates]: [&mut [f64]; 2]) {
+    /// Computes some discs at the end of the step. The state is not changed.
+    pub(super) fn correct(&self, discs: &[u32], to: &mut [StepEndRow]) {
         let PairEngine { system, state, sums, .. } = self;
         let steps = self.elapsed.steps;
-        let is_standing = steps == 0 || self.awaits_forces;
-        let moving = if is_standing { 0 } else { state.moving() };
-        let moving = moving.saturating_sub(first).min(values.len());
-        let [(values, others), (rates, rates_of_others)] =
-            [values, rates].map(|column| column.split_at_mut(moving));
-        self.dynamics.correct(CorrectionArguments {
-            system,
-            state,
-            sums,
-            steps,
-            freedom,
-            first,
-            to: [values, rates],
-        });
-        for (disc, (value, rate)) in (first + moving..).zip(others.iter_mut().zip(rates_of_others)) {
-            [*value, *rate] = state.value_and_rate(&state.row(freedom, disc));
-        }
+        let moving = if steps == 0 || self.awaits_forces { 0 } else { state.moving() };
+        self.dynamics.correct(CorrectionArguments { system, state, sums, steps, moving, discs, to });
     }
 }
 

@@ -19,7 +19,13 @@ use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::sweep::fast::{RecordEntry, StateRecords, SweepReport};
-use stripmine_kernels::{in_parts, in_pieces, over_parts, single_threaded_if};
+use stripmine_kernels::{in_pieces, over_parts, single_threaded_if};
+
+/// Discs that are corrected together.
+pub(super) const AT_A_TIME: usize = 128;
+
+/// Value and rate of each degree of freedom of a disc at the end of a step; zeros where it has fewer.
+pub(super) type StepEndRow = [[f64; 2]; 3];
 
 /// All discs at the end of a step, in memory order.
 pub(super) struct CorrectedDiscs {
@@ -35,20 +41,20 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             let (system, state, discs) = (&self.system, &self.state, self.state.len());
             let vary = system.inertia == Inertia::Varying;
             let mut records = StateRecords::zeros(0, discs, [system.freedoms == 3, vary], 1.0);
-            let mut squares = 0.0;
-            for freedom in 0..system.freedoms {
-                let [values, rates] = self.corrected_column(freedom);
-                if freedom < 2 {
-                    let along = |disc: usize| state.place(disc)[freedom];
-                    let changes = values.iter().enumerate().map(|(disc, now)| (now - along(disc)).abs());
-                    squares += changes.fold(0.0, f64::max).powi(2);
-                }
-                for (k, column) in [values, rates].iter().enumerate() {
-                    // The sentinels are at rest.
-                    let of = |disc: usize| column.get(disc).copied().unwrap_or(0.0);
-                    records.fill(RecordEntry::of(freedom, k), of);
-                }
-            }
+            let moved = records.in_parts(|first, part| {
+                // The sentinels are at rest.
+                let corrected = first..(first + part.records()).min(discs);
+                let mut moved = [0.0; 2];
+                self.for_each_row(corrected, |disc, row| {
+                    for (freedom, values) in row.iter().enumerate().take(system.freedoms) {
+                        (0..2).for_each(|k| part.set(RecordEntry::of(freedom, k), disc - first, values[k]));
+                    }
+                    let place = state.place(disc);
+                    (0..2).for_each(|axis| moved[axis] = (row[axis][0] - place[axis]).abs().max(moved[axis]));
+                });
+                moved
+            });
+            let along = |axis: usize| moved.iter().map(|part: &[f64; 2]| part[axis]).fold(0.0, f64::max);
             // The sentinels are farther apart than any pair acts.
             records.set(RecordEntry::X, discs, 4.0 * system.reach);
             if vary {
@@ -65,7 +71,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
                     },
                 );
             }
-            CorrectedDiscs { records, moved: squares.sqrt() }
+            CorrectedDiscs { records, moved: (along(0).powi(2) + along(1).powi(2)).sqrt() }
         })
     }
 
@@ -76,43 +82,30 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         disc
     }
 
-    /// Computes a degree of freedom and its rate for all discs in memory at the end of the step, on all threads.
-    pub(super) fn corrected_column(&self, freedom: usize) -> [Vec<f64>; 2] {
-        let [mut value, mut rate] = [0, 1].map(|_| vec![0.0; self.state.len()]);
-        in_parts([&mut value, &mut rate], |first, columns| self.correct(freedom, first, columns));
-        [value, rate]
-    }
-
-    /// Computes the particles in the scene's order at the end of the step, on all threads. Handles one degree of freedom after the other, so that few
-    /// columns are in memory at a time.
+    /// Computes the particles in the scene's order at the end of the step, on all threads.
     pub(super) fn step_end_particles(&self) -> Particles {
         let (grains, discs) = (self.start.grain_count(), self.indices_by_number());
         let walls = in_space(self.prescribed().unwrap_or_default().velocity);
+        let turns = self.system.freedoms == 3;
         let mut particles = Particles::clone(&self.start);
         single_threaded_if(self.is_small(), || {
-            for freedom in 0..3 {
-                let turns = freedom < self.system.freedoms;
-                let [values, rates] = if turns { self.corrected_column(freedom) } else { [vec![], vec![]] };
-                in_pieces(particles.all_mut(), |first, piece| {
-                    for ((number, &disc), particle) in (first..).zip(&discs[first..]).zip(piece) {
-                        let disc = disc as usize;
-                        let [value, rate] =
-                            [&values, &rates].map(|column| column.get(disc).copied().unwrap_or(0.0));
-                        match freedom {
-                            0 | 1 => {
-                                particle.position[freedom] = self.absolute_position(disc, [value; 2])[freedom]
-                            }
-                            _ if number < grains => particle.angle = value,
-                            _ => {}
-                        }
-                        match freedom {
-                            _ if number >= grains => particle.velocity = walls,
-                            0 | 1 => particle.velocity[freedom] = rate,
-                            _ => particle.omega = rate,
+            in_pieces(particles.all_mut(), |first, piece| {
+                let discs = &discs[first..first + piece.len()];
+                let mut piece = (first..).zip(piece);
+                self.for_each_row_of(discs, |disc, [[x, u], [y, v], [angle, omega]]| {
+                    let Some((number, particle)) = piece.next() else { return };
+                    particle.position = in_space(self.absolute_position(disc, [*x, *y]));
+                    if number >= grains {
+                        particle.velocity = walls;
+                    } else {
+                        particle.velocity = in_space([*u, *v]);
+                        particle.omega = *omega;
+                        if turns {
+                            particle.angle = *angle;
                         }
                     }
                 });
-            }
+            });
         });
         particles
     }
@@ -156,17 +149,27 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         discs: Range<usize>,
         mut to: impl FnMut(usize, [f64; 2], [f64; 2]),
     ) {
-        const AT_A_TIME: usize = 128;
+        self.for_each_row(discs, |disc, [[x, u], [y, v], _]| {
+            to(disc, self.absolute_position(disc, [*x, *y]), [*u, *v]);
+        });
+    }
+
+    /// Passes each disc of a range in memory and its row at the end of the step.
+    fn for_each_row(&self, discs: Range<usize>, mut to: impl FnMut(usize, &StepEndRow)) {
+        let mut numbers = [0; AT_A_TIME];
         for first in discs.clone().step_by(AT_A_TIME) {
             let count = AT_A_TIME.min(discs.end - first);
-            let mut columns = [[0.0; AT_A_TIME]; 4];
-            let [x, y, vx, vy] = &mut columns;
-            self.correct(0, first, [&mut x[..count], &mut vx[..count]]);
-            self.correct(1, first, [&mut y[..count], &mut vy[..count]]);
-            for at in 0..count {
-                let place = self.absolute_position(first + at, [x[at], y[at]]);
-                to(first + at, place, [vx[at], vy[at]]);
-            }
+            numbers.iter_mut().zip(first as u32..).for_each(|(number, disc)| *number = disc);
+            self.for_each_row_of(&numbers[..count], &mut to);
+        }
+    }
+
+    /// Passes discs in memory and their rows at the end of the step.
+    pub(super) fn for_each_row_of(&self, discs: &[u32], mut to: impl FnMut(usize, &StepEndRow)) {
+        let mut rows = [StepEndRow::default(); AT_A_TIME];
+        for discs in discs.chunks(AT_A_TIME) {
+            self.correct(discs, &mut rows[..discs.len()]);
+            discs.iter().zip(&rows).for_each(|(&disc, row)| to(disc as usize, row));
         }
     }
 

@@ -46,7 +46,7 @@ impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
         let (shape, occupied, index) = (occupancy.shape(), occupancy.occupied(), occupancy.index());
         let h = occupancy.half_width();
         let (ahead, around) = ((1 << h) - 1, (1 << (2 * h + 1)) - 1);
-        let limit = reach * reach * MARGIN;
+        let (limit, positions) = (reach * reach * MARGIN, discs.positions());
         let end = (rows.end + h) * shape.stride() + shape.position(0, 0);
         assert!(
             rows.end <= shape.rows() && end < occupied.positions() && end <= index.len() + h * shape.stride()
@@ -81,8 +81,7 @@ impl<S: Element, P: Precision> RegisterTask<f32> for SparseSearch<'_, S, P> {
                     let ([own, partner], cell_offset) = codes.pair(candidate, index);
                     let [x, y, ..] = codes.cell_offsets()[cell_offset as usize];
                     // SAFETY: the Index numbers discs and sentinels, which have records.
-                    let (own, partner) =
-                        unsafe { (discs.position_unchecked(own), discs.position_unchecked(partner)) };
+                    let (own, partner) = unsafe { (positions.of(own), positions.of(partner)) };
                     let dx = (own[0] - partner[0]) - x.to_f64();
                     let dy = (own[1] - partner[1]) - y.to_f64();
                     found[kept] = candidate;

@@ -284,17 +284,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> RankWorker<S, P, Q> {
 
     /// Packs position, angle and their rates of each disc at the end of the step.
     pub(super) fn standing(&self) -> Parcel {
-        let engine = &self.engine;
-        let columns = [0, 1, 2].map(|freedom| {
-            let turns = freedom < engine.system.freedoms;
-            if turns { engine.corrected_column(freedom) } else { [vec![], vec![]] }
+        let (engine, discs) = (&self.engine, self.reported_discs());
+        let mut numbers = Vec::with_capacity(6 * discs.len());
+        engine.for_each_row_of(&discs, |disc, [[x, u], [y, v], [angle, omega]]| {
+            let [x, y] = engine.absolute_position(disc, [*x, *y]);
+            numbers.extend([x, y, *angle, *u, *v, *omega]);
         });
-        self.each_own(|disc| {
-            let [[x, y, angle], [u, v, omega]] =
-                [0, 1].map(|k| [0, 1, 2].map(|it: usize| columns[it][k].get(disc).copied().unwrap_or(0.0)));
-            let [x, y] = engine.absolute_position(disc, [x, y]);
-            [x, y, angle, u, v, omega]
-        })
+        Parcel::of(&(self.numbers(&discs), Parcel::of_numbers(numbers)))
     }
 
     /// Packs the entries of a column of the state.
