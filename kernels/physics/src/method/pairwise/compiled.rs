@@ -1,9 +1,8 @@
 //! Loops compiled for each law and each scheme of a method. The engine calls them through one trait, so that the rest of it is compiled only once for
 //! each precision and search.
 
-use super::observing::{AT_A_TIME, StepEndRow};
 use super::search::PairSearch;
-use super::state::MovingDiscs;
+use super::state::{AT_A_TIME, MovingDiscs, StepEndRow};
 use super::{CarriedQuery, CarriedState, Dynamics, LawTask, PairSystem, PrescribedMotion, SchemeTask};
 use std::marker::PhantomData;
 use std::ops::Range;

@@ -1,9 +1,8 @@
 //! Pairwise engine: computes all forces, then corrects and predicts in one pass.
 
 use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, SweepArguments};
-use super::observing::StepEndRow;
 use super::search::{PairSearch, SearchCells};
-use super::state::{CellMove, Members, MovingDiscs};
+use super::state::{CellMove, Members, MovingDiscs, StepEndRow};
 use super::{
     Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PrescribedMotion, SortSchedule, not_finite,
 };

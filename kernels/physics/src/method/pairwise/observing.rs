@@ -11,6 +11,7 @@
 
 use super::compiled::ObservationArguments;
 use super::search::PairSearch;
+use super::state::{AT_A_TIME, StepEndRow};
 use super::{GravityWork, PairEngine};
 use crate::observe::{ContactSums, GrainSums, SceneProperties};
 use crate::particles::{Particle, ParticleKind, Particles, in_space};
@@ -20,12 +21,6 @@ use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::sweep::fast::{RecordEntry, StateRecords, SweepReport};
 use stripmine_kernels::{in_pieces, over_parts, single_threaded_if};
-
-/// Discs that are corrected together.
-pub(super) const AT_A_TIME: usize = 128;
-
-/// Value and rate of each degree of freedom of a disc at the end of a step; zeros where it has fewer.
-pub(super) type StepEndRow = [[f64; 2]; 3];
 
 /// All discs at the end of a step, in memory order.
 pub(super) struct CorrectedDiscs {

@@ -10,6 +10,12 @@ use stripmine_kernels::isa::aligned_column::column_memory;
 use stripmine_kernels::sweep::fast::{RecordEntry, StateRecords};
 use stripmine_kernels::{in_pieces, reorder_into, reordered};
 
+/// Discs that are corrected together.
+pub(super) const AT_A_TIME: usize = 128;
+
+/// Value and rate of each degree of freedom of a disc at the end of a step; zeros where it has fewer.
+pub(super) type StepEndRow = [[f64; 2]; 3];
+
 /// Change of cell of a disc, its position relative to the new centre (length), and the periods that it crosses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CellMove {
