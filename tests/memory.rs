@@ -338,15 +338,15 @@ fn oversized_scenes_are_refused_before_allocation() {
                radius = 0.5\nmass = 1.0\n[law]\nstiffness = 187.0\n[integrator]\ndt = 0.005\n[run]\nsteps = 1\n[machine]\nengine = \"programs\"\n";
     for (side, count, words) in [
         // Two billion discs; and two discs in two billion cells.
-        ("1e5", "2e9", "placing 2e9 discs takes"),
-        ("3e4", "2", "a run of 2 discs in"),
+        ("1e5", "2e9", ["`particles.count` cannot be the number 2e9", "1 to 268435455"]),
+        ("3e4", "2", ["a run of 2 discs in", " left"]),
     ] {
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, gas.replace("SIDE", side).replace("COUNT", count)).unwrap();
         let said = refused(&["scene", "check"], &path);
-        assert!(said.contains(words) && said.contains(" left"), "{said}");
+        assert!(words.iter().all(|words| said.contains(words)), "{said}");
         let said = refused(&["run"], &path);
-        assert!(said.contains(words), "{said}");
+        assert!(said.contains(words[0]), "{said}");
     }
 }
 

@@ -28,7 +28,7 @@ const CASES: &[(&str, &str)] = &[
     ),
     (
         "18446744073709551615\nLATTICE PROPERTIES\nROW\n",
-        "bad.xyz:3: truncated: the file ends after 1 of the 18446744073709551615 discs that line 1 announces",
+        "bad.xyz:1: a frame of 18446744073709551615 discs; expected at most 536870911, as searches number them with 29 bits",
     ),
     (
         "1\nLATTICE PROPERTIES\nROW\nROW\n",

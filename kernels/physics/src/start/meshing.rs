@@ -9,6 +9,9 @@ use crate::placement::{random_mesh_sites, set_gaussian_velocities};
 use crate::scene::{Amount, COUNT, GeneratedDiscs, MistakeKind, PACKING_FRACTION, SPACING, SceneError};
 use std::f64::consts::PI;
 
+/// Largest number of sites, which most meshes have far more of than discs.
+const MOST_SITES: f64 = (u32::MAX / 2) as f64;
+
 /// Places discs at random sites of a square mesh.
 pub(super) fn on_mesh(
     stated: &StatedStart<'_>,
@@ -42,12 +45,12 @@ pub(super) fn on_mesh(
         );
         return Err(refuse(message).advising("take fewer discs, a larger box or a smaller particles.spacing"));
     }
-    if counts[0] * counts[1] > MOST {
+    if counts[0] * counts[1] > MOST_SITES {
         let message = format!(
-            "a mesh of {} × {} sites has more than the {MOST} that can be numbered",
+            "a mesh of {} × {} sites has more than the {most} that can be numbered",
             counts[0],
             counts[1],
-            MOST = significant(MOST, 4)
+            most = significant(MOST_SITES, 4)
         );
         let error = stated.spot(&SPACING).error(MistakeKind::Placement, message);
         return Err(error.advising("set a larger particles.spacing"));
