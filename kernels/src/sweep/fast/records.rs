@@ -208,8 +208,7 @@ impl<S: Element> StateRecords<S> {
     }
 }
 
-/// Positions in records, whose column a search keeps at hand: reached through the records, each position took two more loads, and a
-/// search of lists 1.6 times as long.
+/// Positions in records. A search keeps the column at hand: reached through the records, a position takes two more loads.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RecordPositions<'a, S>(&'a [S]);
 
