@@ -172,9 +172,14 @@ impl BenchVerb {
             self.measurement(entry, bench, &given).map_err(|error| measurement_failure(error, &given))?;
         measurement.prepared.memory.clone().for_crew(common.crew).fits(bench.name)?;
         let same = format!("bench\n{:?}\n{}", built(), measurement.prepared.scene);
-        let first = || self.measure_once((entry, bench, &given), common.crew, common);
-        processes::run_jointly(join, &same, first, || {
-            processes::serve(common.crew, || measurement.prepared.start(StartPurpose::Measurement).map(drop));
+        processes::run_jointly(join, &same, |is_first| match is_first {
+            true => self.measure_once((entry, bench, &given), common.crew, common),
+            false => {
+                processes::serve(common.crew, || {
+                    measurement.prepared.start(StartPurpose::Measurement).map(drop)
+                });
+                Ok(())
+            }
         })
     }
 

@@ -257,25 +257,23 @@ pub(super) fn serve(crew: RankBackend, start: impl FnOnce() -> Result<(), Broken
     }
 }
 
-/// Runs joint work on all processes. The first rank runs `first`, which may begin simulations on all of them; the others run `serve`.
+/// Runs joint work on all processes. `work` receives true on the first rank, which may begin simulations on all of them.
 ///
 /// # Errors
 /// [`CommandFailure`] of the rank itself, or of [`begin`] if scenes or programs differ.
 pub(super) fn run_jointly(
     join: fn() -> Box<dyn Ranks>,
     same: &str,
-    first: impl FnOnce() -> Result<(), CommandFailure>,
-    serve: impl FnOnce(),
+    work: impl FnOnce(bool) -> Result<(), CommandFailure>,
 ) -> Result<(), CommandFailure> {
     let ranks = join();
     begin(ranks.as_ref(), same)?;
-    if ranks.rank() == 0 {
-        let outcome = first();
+    let is_first = ranks.rank() == 0;
+    let outcome = work(is_first);
+    if is_first {
         dismiss(ranks.as_ref()).map_err(lost_rank_failure)?;
-        return outcome;
     }
-    serve();
-    Ok(())
+    outcome
 }
 
 /// Runs independent pieces of work, distributed over the ranks in turn. The first rank returns the first failure once all have ended.

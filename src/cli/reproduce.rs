@@ -68,9 +68,13 @@ impl Reproduce {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
         let RankBackend::Processes(join) = common.crew else { return self.make(None, common, methods) };
         let ranks = join();
-        let first = || self.make(Some(ranks.as_ref()), common, methods);
-        processes::run_jointly(join, &format!("{}\n{:?}", common.command, built()), first, || {
-            self.make_assigned_items(ranks.as_ref(), common, methods)
+        let same = format!("{}\n{:?}", common.command, built());
+        processes::run_jointly(join, &same, |is_first| match is_first {
+            true => self.make(Some(ranks.as_ref()), common, methods),
+            false => {
+                self.make_assigned_items(ranks.as_ref(), common, methods);
+                Ok(())
+            }
         })
     }
 

@@ -51,6 +51,11 @@ pub(crate) enum StudyError {
     /// Threads could not be started.
     #[error("the threads cannot be started: {0}; ask for fewer with --threads")]
     Threads(rayon::ThreadPoolBuildError),
+    /// A temporary file could not be written.
+    #[error(
+        "a temporary file cannot be written: {0}\n  help: free space there, or set TMPDIR to another folder"
+    )]
+    Files(std::io::Error),
     /// Error of a study of a single method.
     #[error("{0}")]
     Own(Box<dyn Reported>),
@@ -109,7 +114,9 @@ impl Reported for StudyError {
             StudyError::OverBeforeOutput { .. }
             | StudyError::EveryRunFails { .. }
             | StudyError::Interrupted => ErrorClass::Precondition,
-            StudyError::Threads(_) | StudyError::Parameters(_) => ErrorClass::InputOutput,
+            StudyError::Threads(_) | StudyError::Files(_) | StudyError::Parameters(_) => {
+                ErrorClass::InputOutput
+            }
             _ => self.inner_error().map_or(ErrorClass::Usage, Reported::class),
         }
     }

@@ -89,11 +89,15 @@ impl RunVerb {
         prepared.memory = prepared.memory.for_crew(crew);
         prepared.memory.fits(&self.scene)?;
         let RankBackend::Processes(join) = crew else {
-            return self.carry_out((&prepared, entry), &folder, crew, common);
+            return self.carry_out((prepared, entry), &folder, crew, common);
         };
-        let first = || self.carry_out((&prepared, entry), &folder, crew, common);
-        processes::run_jointly(join, &format!("run\n{:?}\n{}", built(), prepared.scene), first, || {
-            processes::serve(crew, || prepared.start(StartPurpose::Run).map(drop));
+        let same = format!("run\n{:?}\n{}", built(), prepared.scene);
+        processes::run_jointly(join, &same, |is_first| match is_first {
+            true => self.carry_out((prepared, entry), &folder, crew, common),
+            false => {
+                processes::serve(crew, || prepared.start(StartPurpose::Run).map(drop));
+                Ok(())
+            }
         })
     }
 
@@ -112,7 +116,7 @@ impl RunVerb {
     /// Executes the run and prints its summary.
     fn carry_out(
         &self,
-        (prepared, entry): (&Prepared, &'static MethodEntry),
+        (prepared, entry): (Prepared, &'static MethodEntry),
         folder: &Path,
         crew: RankBackend,
         common: &Common,
@@ -120,7 +124,7 @@ impl RunVerb {
         let existing = self.existing();
         let begins = starts_from_beginning(folder, existing)?;
         if !common.quiet {
-            print_expectations(prepared, begins);
+            print_expectations(&prepared, begins);
         }
         let bar = bar(common, 0, STEPS);
         let progress = |done, all| {
@@ -132,7 +136,8 @@ impl RunVerb {
                 warn(note);
             }
         };
-        let job = RunJob { prepared, quantities: entry.quantities, program: &built() };
+        let scene = prepared.scene.clone();
+        let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &built() };
         let work = || run(job, folder, existing, signals::interruption_flag(), progress, notice);
         let ending = ranks::with_backend(crew, work);
         clear_progress();
@@ -142,7 +147,7 @@ impl RunVerb {
                 if !common.quiet {
                     summary.warnings.iter().for_each(warn);
                 }
-                print(&summary_text(&summary, folder, &prepared.scene))
+                print(&summary_text(&summary, folder, &scene))
             }
             Ending::Interrupted { clock } => {
                 Err(CommandFailure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })

@@ -255,7 +255,7 @@ impl RunVerb {
         notice: impl FnMut(&str) + Send,
     ) -> Result<Summary, CommandFailure> {
         let (prepared, entry) = scene?;
-        let job = RunJob { prepared: &prepared, quantities: entry.quantities, program: &built() };
+        let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &built() };
         match run(job, folder, self.existing(), signals::interruption_flag(), progress, notice)? {
             Ending::Done(summary) => {
                 for warning in &summary.warnings {

@@ -1,7 +1,8 @@
 //! Items of hard discs: each is a study with a page in the folder `pages`.
 
 use super::study::{
-    atmosphere, collapse, complexity, cooling, fluid, masks, precision, rates, soft_hard, structure,
+    atmosphere, cells, collapse, complexity, cooling, crossing, fluid, lifetimes, masks, precision, rates,
+    soft_hard, structure,
 };
 use crate::results::Item;
 
@@ -11,6 +12,9 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-structure", structure::reproduce),
     Item::of("hard-disks-rates", rates::reproduce),
     Item::of("hard-disks-masks", masks::reproduce),
+    Item::of("hard-disks-cells", cells::reproduce),
+    Item::of("hard-disks-lifetimes", lifetimes::reproduce),
+    Item::of("hard-disks-crossing", crossing::reproduce),
     Item::of("hard-disks-complexity", complexity::reproduce),
     Item::of("hard-disks-cooling", cooling::reproduce),
     Item::of("hard-disks-collapse", collapse::reproduce),

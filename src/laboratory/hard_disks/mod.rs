@@ -9,5 +9,10 @@ use items::ITEMS;
 use verbs::CHARTS;
 
 /// Items, verbs and charts.
-pub(super) static LABORATORY: Laboratory =
-    Laboratory { method: "hard-disks", items: ITEMS, verbs: &[], charts: CHARTS, works: &[] };
+pub(super) static LABORATORY: Laboratory = Laboratory {
+    method: "hard-disks",
+    items: ITEMS,
+    verbs: &[],
+    charts: CHARTS,
+    works: &study::cells::WORKS,
+};

@@ -1,6 +1,6 @@
 //! Items of N-body dynamics: each is a study with a page in the folder `pages`.
 
-use super::study::{collapse, energy, rates};
+use super::study::{collapse, energy, force, rates};
 use crate::console::CommandFailure;
 use crate::laboratory::programs;
 use crate::laboratory::running::prepare_preset;
@@ -11,6 +11,7 @@ use stripmine_physics::scene::Overrides;
 /// Every item, in the order of its chapter.
 pub(super) const ITEMS: &[Item] = &[
     Item::of("nbody-energy", energy::reproduce),
+    Item::of("nbody-force", force::reproduce),
     Item::of("nbody-rates", rates::reproduce),
     Item::of("nbody-collapse", collapse::reproduce),
     Item::of("nbody-programs", reproduce_programs),

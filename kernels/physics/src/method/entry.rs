@@ -305,13 +305,13 @@ impl Prepared {
         self.model.start(purpose)
     }
 
-    /// Starts the only simulation of the scene. Less memory is needed than with [`start`](Self::start): the simulation may release the
-    /// particles at the start.
+    /// Starts the last simulation of the scene. Less memory is needed than with [`start`](Self::start): the particles at the start may be
+    /// released, and [`particles`](Self::particles) is empty then.
     ///
     /// # Errors
     /// [`PhysicsFailure`] as of [`start`](Self::start).
-    pub fn start_only(self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
-        self.model.start_only(purpose)
+    pub fn start_last(&mut self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+        self.model.start_last(purpose)
     }
 }
 
@@ -357,11 +357,11 @@ pub trait Startable: Send + Sync {
     /// [`PhysicsFailure`] if the start violates a precondition, or the processor lacks the requested instruction set.
     fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure>;
 
-    /// Starts the only simulation of the scene, which may release the particles at the start.
+    /// Starts the last simulation of the scene, for which the particles at the start may be released.
     ///
     /// # Errors
     /// [`PhysicsFailure`] as of [`start`](Self::start).
-    fn start_only(self: Box<Self>, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+    fn start_last(&mut self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         self.start(purpose)
     }
 

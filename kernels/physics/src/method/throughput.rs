@@ -157,11 +157,15 @@ impl ThroughputRun {
     ///
     /// # Errors
     /// [`MeasurementError`] if the scene is invalid or fails while running.
-    pub fn begin(bench: &'static Bench, prepared: Prepared, steps: u64) -> Result<Self, MeasurementError> {
+    pub fn begin(
+        bench: &'static Bench,
+        mut prepared: Prepared,
+        steps: u64,
+    ) -> Result<Self, MeasurementError> {
         prepared.memory.clone().for_crew(ranks::current_backend()).fits(bench.name)?;
         let (particles, settings) = (prepared.particles().grain_count(), prepared.settings.clone());
         let begun = Instant::now();
-        let simulation = prepared.start_only(StartPurpose::Measurement)?;
+        let simulation = prepared.start_last(StartPurpose::Measurement)?;
         let start = begun.elapsed().as_secs_f64();
         let places = |names: &'static [&'static str]| {
             names

@@ -31,7 +31,7 @@ pub(super) struct RunIdentity {
 
 impl RunIdentity {
     /// Identity of a job whose run is in `folder`.
-    pub(super) fn of(RunJob { prepared, program, .. }: RunJob<'_>, folder: &Path) -> RunIdentity {
+    pub(super) fn of(RunJob { prepared, program, .. }: &RunJob<'_>, folder: &Path) -> RunIdentity {
         let discs = digest(prepared.particles());
         let file = prepared.start_file.as_deref();
         let scene = match file {
@@ -39,7 +39,7 @@ impl RunIdentity {
             Some(file) => with_start_file(&prepared.scene, &path_seen_from_folder(folder, file), &discs),
         };
         let file = file.map(|file| file.display().to_string());
-        RunIdentity { scene, discs, file, program: program.clone() }
+        RunIdentity { scene, discs, file, program: Origin::clone(program) }
     }
 
     /// Entries for a checkpoint.

@@ -30,7 +30,7 @@ use crate::io::checkpoint::{CheckpointError, WriteError};
 use crate::io::growing_file::GrowingFileError;
 use crate::io::lock::Lock;
 use crate::io::{FileError, FolderError};
-use crate::method::{Clock, ObservedQuantity, PhysicsFailure, Prepared, StartPurpose, Until};
+use crate::method::{Clock, ObservedQuantity, PhysicsFailure, Prepared, Simulation, StartPurpose, Until};
 use crate::number::significant;
 use crate::origin::Origin;
 use crate::quoted;
@@ -38,7 +38,8 @@ use crate::reported::{ErrorClass, FilePlace, Reported};
 use crate::scene::{MeanTarget, SceneErrors, Width};
 use crate::signals;
 use folder::RUN;
-use recorder::RunRecorder;
+use recorder::{OfTheStart, RunRecorder};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -267,14 +268,54 @@ pub enum Ending {
 }
 
 /// Scene to run, with its context.
-#[derive(Clone, Copy)]
 pub struct RunJob<'j> {
     /// Prepared scene.
-    pub prepared: &'j Prepared,
+    pub prepared: SceneToRun<'j>,
     /// Quantities of its method.
     pub quantities: &'static [ObservedQuantity],
     /// Program that runs it, for the record.
     pub program: &'j Origin,
+}
+
+/// Prepared scene of a run: kept by the caller, or given to the run, which then releases the particles at the start as soon as the simulation
+/// has its own.
+pub enum SceneToRun<'j> {
+    /// Kept.
+    Kept(&'j Prepared),
+    /// Given.
+    Given(Box<Prepared>),
+}
+
+impl SceneToRun<'_> {
+    fn start(&mut self) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+        match self {
+            SceneToRun::Kept(prepared) => prepared.start(StartPurpose::Run),
+            SceneToRun::Given(prepared) => prepared.start_last(StartPurpose::Run),
+        }
+    }
+}
+
+impl Deref for SceneToRun<'_> {
+    type Target = Prepared;
+
+    fn deref(&self) -> &Prepared {
+        match self {
+            SceneToRun::Kept(prepared) => prepared,
+            SceneToRun::Given(prepared) => prepared,
+        }
+    }
+}
+
+impl<'j> From<&'j Prepared> for SceneToRun<'j> {
+    fn from(prepared: &'j Prepared) -> Self {
+        SceneToRun::Kept(prepared)
+    }
+}
+
+impl From<Prepared> for SceneToRun<'_> {
+    fn from(prepared: Prepared) -> Self {
+        SceneToRun::Given(Box::new(prepared))
+    }
 }
 
 /// Number of progress reports of a run, and the longest interval between two; it has more reports if this is exceeded.
@@ -303,24 +344,25 @@ pub fn starts_from_beginning(folder: &Path, existing: ExistingRun) -> Result<boo
 /// # Errors
 /// [`RunError`]; after a failure of the physics, the folder has the state of that step and a summary of the failure.
 pub fn run(
-    job: RunJob<'_>,
+    mut job: RunJob<'_>,
     folder: &Path,
     existing: ExistingRun,
     interrupted: &AtomicBool,
     mut progress: impl FnMut(u64, u64),
     notice: impl FnMut(&str),
 ) -> Result<Ending, RunError> {
-    let prepared = job.prepared;
-    prepared.memory.fits("scene")?;
+    job.prepared.memory.fits("scene")?;
     // Refusals come before expensive work.
     starts_from_beginning(folder, existing)?;
-    let mut simulation = prepared.start(StartPurpose::Run).map_err(RunError::Start)?;
+    let of_the_start = OfTheStart::new(&job, folder);
+    let mut simulation = job.prepared.start().map_err(RunError::Start)?;
+    let job = &job;
     // An interrupted start would leave a folder without a checkpoint; a resumed run has one.
     let held = (!matches!(existing, ExistingRun::Resume { .. })).then(signals::hold);
-    let mut recorder = RunRecorder::open(folder, existing, job, simulation.as_mut())?;
+    let mut recorder = RunRecorder::open(folder, existing, (job, of_the_start), simulation.as_mut())?;
     let _held = held.unwrap_or_else(signals::hold);
     recorder.new_notes().iter().map(String::as_str).for_each(notice);
-    let until = prepared.schedule.until;
+    let until = job.prepared.schedule.until;
     let from = simulation.clock();
     let mut strides = STRIDES;
     let start = Instant::now();

@@ -57,6 +57,23 @@ pub(super) struct RunRecorder {
     unsaved_since: Instant,
 }
 
+/// Results of reading the particles at the start, which a simulation may release.
+pub(super) struct OfTheStart {
+    identity: RunIdentity,
+    /// Structure functions without samples.
+    structured: StructureSampler,
+}
+
+impl OfTheStart {
+    /// Reads the particles of a job whose run is in `folder`.
+    pub(super) fn new(job: &RunJob<'_>, folder: &Path) -> OfTheStart {
+        OfTheStart {
+            identity: RunIdentity::of(job, folder),
+            structured: StructureSampler::new(&job.prepared),
+        }
+    }
+}
+
 impl RunRecorder {
     /// Starts a run in a folder, or resumes the one in it.
     ///
@@ -65,7 +82,7 @@ impl RunRecorder {
     pub(super) fn open(
         path: &Path,
         existing: ExistingRun,
-        job: RunJob<'_>,
+        job: (&RunJob<'_>, OfTheStart),
         simulation: &mut dyn Simulation,
     ) -> Result<RunRecorder, RunError> {
         let folder = RunFolder::open(path, RUN, &[])?;
@@ -81,7 +98,7 @@ impl RunRecorder {
             ExistingRun::Resume { other_version } if folder.has_own() => match read_latest(path)? {
                 Some(latest) => RunRecorder::resume(folder, latest, job, simulation, other_version, notes),
                 None => {
-                    check_scene_of_start(&folder, &RunIdentity::of(job, path).scene)?;
+                    check_scene_of_start(&folder, &job.1.identity.scene)?;
                     notes.push("started again: there was no checkpoint yet".to_owned());
                     RunRecorder::begin(folder, job, simulation, notes)
                 }
@@ -93,15 +110,16 @@ impl RunRecorder {
     /// Creates the files and writes the initial state.
     fn begin(
         mut folder: RunFolder,
-        job: RunJob<'_>,
+        (job, of_the_start): (&RunJob<'_>, OfTheStart),
         simulation: &mut dyn Simulation,
         notes: Vec<String>,
     ) -> Result<RunRecorder, RunError> {
         folder.clear(&CHECKPOINTS)?;
-        folder.claim(ALWAYS.into_iter().chain(run_file_names(job.prepared)), false)?;
-        let header = header_of(job.prepared, job.quantities, simulation);
-        let growing = GrowingFiles::begin(&folder, job.prepared, &header)?;
-        let mut recorder = RunRecorder::with(folder, job, (growing, header), &simulation.clock(), notes);
+        folder.claim(ALWAYS.into_iter().chain(run_file_names(&job.prepared)), false)?;
+        let header = header_of(&job.prepared, job.quantities, simulation);
+        let growing = GrowingFiles::begin(&folder, &job.prepared, &header)?;
+        let clock = simulation.clock();
+        let mut recorder = RunRecorder::with(folder, (job, of_the_start), (growing, header), &clock, notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
         if let Some(failure) = recorder.add_thermo_row(simulation)? {
@@ -113,13 +131,12 @@ impl RunRecorder {
 
     fn with(
         folder: RunFolder,
-        job: RunJob<'_>,
+        (&RunJob { ref prepared, quantities, .. }, of_the_start): (&RunJob<'_>, OfTheStart),
         (growing, header): (GrowingFiles, RunHeader),
         clock: &Clock,
         notes: Vec<String>,
     ) -> RunRecorder {
-        let RunJob { prepared, quantities, .. } = job;
-        let identity = RunIdentity::of(job, folder.path());
+        let OfTheStart { identity, structured } = of_the_start;
         let schedule = prepared.schedule;
         let due = [schedule.rows, schedule.snapshots, schedule.checkpoints].map(|every| every.next(clock));
         RunRecorder {
@@ -131,7 +148,7 @@ impl RunRecorder {
             quantities,
             due,
             growing,
-            structured: StructureSampler::new(prepared),
+            structured,
             rows: AveragedRows::new(quantities),
             goal: RunGoal::of(prepared, quantities),
             notes,
@@ -145,12 +162,12 @@ impl RunRecorder {
     fn resume(
         mut folder: RunFolder,
         latest: LatestCheckpoint,
-        job: RunJob<'_>,
+        (job, mut of_the_start): (&RunJob<'_>, OfTheStart),
         simulation: &mut dyn Simulation,
         other_version: bool,
         session: Vec<String>,
     ) -> Result<RunRecorder, RunError> {
-        let RunJob { prepared, quantities, .. } = job;
+        let &RunJob { ref prepared, quantities, .. } = job;
         let newest = folder.file(NAME);
         let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
         let mut checkpoint = latest.checkpoint;
@@ -160,8 +177,7 @@ impl RunRecorder {
         };
         let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
         let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
-        let mut notes =
-            RunIdentity::of(job, folder.path()).check(folder.path(), &checkpoint, clock, other_version)?;
+        let mut notes = of_the_start.identity.check(folder.path(), &checkpoint, clock, other_version)?;
         notes.extend(session);
         if latest.file != newest {
             notes.push(format!(
@@ -181,7 +197,7 @@ impl RunRecorder {
         let header = header_of(prepared, quantities, simulation);
         let mut growing =
             GrowingFiles::resume(&folder, prepared, &header, (&checkpoint.counters, &mut notes), foreign)?;
-        let structured = StructureSampler::resumed(prepared, &checkpoint, &mut notes).map_err(foreign)?;
+        of_the_start.structured.resume(&checkpoint, &mut notes).map_err(foreign)?;
         let snapshot = Snapshot {
             counters: std::mem::take(&mut checkpoint.counters),
             columns: std::mem::take(&mut checkpoint.columns),
@@ -196,8 +212,7 @@ impl RunRecorder {
         let last = FORMATS.iter().filter(|format| matches!(format.writing, FrameWriting::Last(_)));
         let mut of_the_end = last.map(|format| format.file).chain(OBSERVABLES.iter().map(|it| it.file));
         of_the_end.try_for_each(|name| folder.remove_own(name))?;
-        let mut recorder = RunRecorder::with(folder, job, (growing, header), &clock, notes);
-        recorder.structured = structured;
+        let mut recorder = RunRecorder::with(folder, (job, of_the_start), (growing, header), &clock, notes);
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
         recorder.write_scene()?;

@@ -40,9 +40,11 @@ pub(super) struct StructureSampler {
     forces: Option<PairForces>,
     /// Samples at earlier rows, if an observable needs them, and the present state.
     motion: Option<(MotionHistory, GrainStates)>,
-    /// True if discs are followed across periodic sides, and the initial number of particles.
+    /// True if discs are followed across periodic sides.
     follows: bool,
+    /// Initial numbers of particles and of grains.
     particles: usize,
+    grains: usize,
 }
 
 /// Sums of an observable.
@@ -128,35 +130,31 @@ impl StructureSampler {
             motion: moves.then(|| (MotionHistory::new(grains.len()), GrainStates::of(grains))),
             follows: prepared.output.follows_motion() && prepared.domain.periodic().contains(&true),
             particles: prepared.particles().len(),
+            grains: grains.len(),
         }
     }
 
-    /// Restores the sums of a checkpoint. Observables that it lacks, or sampled at other moments, start now; `notes` receives their names.
+    /// Restores the sums of a checkpoint into empty ones. Observables that it lacks, or sampled at other moments, start now; `notes`
+    /// receives their names.
     ///
     /// # Errors
     /// A message, if the checkpoint is not of this scene.
-    pub(super) fn resumed(
-        prepared: &Prepared,
-        checkpoint: &Checkpoint,
-        notes: &mut Vec<String>,
-    ) -> Result<StructureSampler, String> {
-        let mut structured = StructureSampler::new(prepared);
+    pub(super) fn resume(&mut self, checkpoint: &Checkpoint, notes: &mut Vec<String>) -> Result<(), String> {
         let there = Snapshot { counters: checkpoint.counters.clone(), columns: vec![] };
         let column = |name: &str| match checkpoint.column(&key(name)) {
             Some(CheckpointColumn::F64(values)) => Some(values.as_slice()),
             _ => None,
         };
-        let at_same_moments =
-            SPACINGS.map(|name| there.sum(&key(name)).ok()) == structured.spacings.map(Some);
+        let at_same_moments = SPACINGS.map(|name| there.sum(&key(name)).ok()) == self.spacings.map(Some);
         let wrong = |name: &str| format!("its data of the structure ({name}) are not of this scene");
         let is_known =
             |observable: &StructureObservable| at_same_moments && column(observable.name).is_some();
         // Functions of two moments are resumed together or not at all.
-        let motion_is_known = structured.sums_of_two_moments().all(|sum| is_known(sum.observable));
+        let motion_is_known = self.sums_of_two_moments().all(|sum| is_known(sum.observable));
         if at_same_moments {
-            structured.passed = [there.count(&key(PASSED[0]))?, there.count(&key(PASSED[1]))?];
+            self.passed = [there.count(&key(PASSED[0]))?, there.count(&key(PASSED[1]))?];
         }
-        for sum in &mut structured.sums {
+        for sum in &mut self.sums {
             let name = sum.observable.name;
             let goes_on = match sum.observable.seen {
                 SamplingKind::Once { .. } => is_known(sum.observable),
@@ -168,18 +166,17 @@ impl StructureSampler {
             };
             sum.looks = there.count(&key(&format!("{name} looks")))?;
             let length = there.count(&key(&format!("{name} length")))?;
-            let width = width(sum.observable, &structured.setting);
+            let width = width(sum.observable, &self.setting);
             sum.blocks = Blocks::restored(width, length, values).ok_or_else(|| wrong(name))?;
         }
-        if let Some((motion, _)) = structured.motion.as_mut().filter(|_| motion_is_known) {
+        if let Some((motion, _)) = self.motion.as_mut().filter(|_| motion_is_known) {
             let values = column(MOTION).ok_or_else(|| wrong(MOTION))?;
             let looks = there.count(&key(MOTION))?;
             let [first, last] = MOTIONS.map(|name| there.sum(&key(name)));
-            let discs = prepared.particles().grain_count();
-            let restored = MotionHistory::restored(discs, looks, [first?, last?], values);
+            let restored = MotionHistory::restored(self.grains, looks, [first?, last?], values);
             *motion = restored.ok_or_else(|| wrong(MOTION))?;
         }
-        Ok(structured)
+        Ok(())
     }
 
     /// Sums of functions of two moments.

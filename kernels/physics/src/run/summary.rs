@@ -70,7 +70,7 @@ pub struct Summary {
 
 impl Summary {
     pub(super) fn of(
-        RunJob { prepared, program, .. }: RunJob<'_>,
+        RunJob { prepared, program, .. }: &RunJob<'_>,
         simulation: &dyn Simulation,
         averages: RunAverages,
         from: Clock,
@@ -82,7 +82,7 @@ impl Summary {
         let checks = simulation.warnings();
         warnings.extend(checks.iter().map(|check| check.message.clone()));
         Summary {
-            origin: program.clone(),
+            origin: Origin::clone(program),
             host: host(),
             begun: moment(SystemTime::now() - Duration::from_secs_f64(seconds)),
             ended: moment(SystemTime::now()),

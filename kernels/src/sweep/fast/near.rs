@@ -69,6 +69,18 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         unsafe { self.positions.of(disc) }
     }
 
+    /// True if two positions with a cell offset are near enough.
+    ///
+    /// # Safety
+    /// `cell_offset` is below 5.
+    #[inline(always)]
+    unsafe fn is_near(&self, [here, there]: [[f64; 2]; 2], cell_offset: usize) -> bool {
+        // SAFETY: the caller promises a cell offset below 5, the length of `cell_offsets`.
+        let along = unsafe { *self.cell_offsets.get_unchecked(cell_offset) };
+        let (dx, dy) = ((here[0] - there[0]) - along[0], (here[1] - there[1]) - along[1]);
+        dx * dx + dy * dy < self.limit
+    }
+
     /// Lists those of some pairs, given with the numbers of their cell offsets, that are near enough. The number of listed pairs stays in a register,
     /// while [`list_if_near`](Self::list_if_near) stores it for every pair.
     ///
@@ -79,14 +91,11 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         self.touches.reserve(pairs.len());
         let (to, mut length) = (self.touches.as_mut_ptr(), self.touches.len());
         for (discs, cell_offset) in pairs {
-            // SAFETY: the caller promises discs, and a cell offset below 5, the length of `cell_offsets`.
-            let ([here, there], along) = unsafe {
-                (discs.map(|disc| self.disc_position(disc)), *self.cell_offsets.get_unchecked(cell_offset))
-            };
-            let (dx, dy) = ((here[0] - there[0]) - along[0], (here[1] - there[1]) - along[1]);
+            // SAFETY: the caller promises discs, and a cell offset below 5.
+            let is_near = unsafe { self.is_near(discs.map(|disc| self.disc_position(disc)), cell_offset) };
             // SAFETY: `reserve` has left capacity for all pairs.
             unsafe { to.add(length).write(CandidatePair { discs, cell_offset: cell_offset as u32 }) };
-            length += usize::from(dx * dx + dy * dy < self.limit);
+            length += usize::from(is_near);
         }
         // SAFETY: everything below `length` has been written.
         unsafe { self.touches.set_len(length) };
@@ -98,10 +107,8 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
     /// `second` is one of the discs, and `cell_offset` below 5.
     #[inline(always)]
     pub(super) unsafe fn list_if_near(&mut self, first: u32, at: [f64; 2], second: u32, cell_offset: usize) {
-        // SAFETY: the caller promises that `second` is a disc and that `cell_offset` is below 5, the length of `cell_offsets`.
-        let (there, along) =
-            unsafe { (self.disc_position(second), *self.cell_offsets.get_unchecked(cell_offset)) };
-        let (dx, dy) = ((at[0] - there[0]) - along[0], (at[1] - there[1]) - along[1]);
+        // SAFETY: the caller promises that `second` is a disc, and a cell offset below 5.
+        let is_near = unsafe { self.is_near([at, self.disc_position(second)], cell_offset) };
         let length = self.touches.len();
         if length == self.touches.capacity() {
             self.touches.reserve(AT_ONCE);
@@ -111,7 +118,7 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         // SAFETY: `reserve` above has left capacity for one more, and it is written before the length covers it.
         unsafe {
             self.touches.as_mut_ptr().add(length).write(touch);
-            self.touches.set_len(length + usize::from(dx * dx + dy * dy < self.limit));
+            self.touches.set_len(length + usize::from(is_near));
         }
     }
 }

@@ -1,10 +1,13 @@
 //! Studies of hard discs.
 
 pub(crate) mod atmosphere;
+pub(crate) mod cells;
 pub(crate) mod collapse;
 pub(crate) mod complexity;
 pub(crate) mod cooling;
+pub(crate) mod crossing;
 pub(crate) mod fluid;
+pub(crate) mod lifetimes;
 pub(crate) mod masks;
 pub(crate) mod precision;
 pub(crate) mod rates;

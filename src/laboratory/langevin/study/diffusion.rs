@@ -24,6 +24,12 @@ const DURATION: f64 = 30.0;
 const SAMPLES: f64 = 8.0;
 /// Steps at which the temperature of free particles is measured, over m/γ.
 const STEPS: [f64; 6] = [0.01, 0.03, 0.1, 0.3, 0.6, 1.0];
+/// Time from which velocities are collected, width of a bin, and number of bins on either side of 0.
+const THERMAL: f64 = 3.0;
+const BIN: f64 = 0.25;
+const BINS: i32 = 16;
+/// Particles of the starts on a mesh of 890 × 890 positions.
+const STARTS: [u64; 4] = [1000, 40_000, 400_000, 890 * 890];
 /// Half-width of a 95 % interval in standard errors.
 const WIDTH: f64 = 1.96;
 
@@ -44,6 +50,8 @@ struct SystemSeries {
     maxwell: f64,
     /// Mean square of the velocity components at the end.
     temperature: f64,
+    /// Velocity components at the samples from the time 3 on: more than m/γ apart, and so independent.
+    velocities: Vec<f64>,
 }
 
 impl SystemSeries {
@@ -66,6 +74,19 @@ impl SystemSeries {
         let contact = (1.0 - 7.0 / 16.0 * packing) / (1.0 - packing).powi(2);
         let friction = 1.0 + 2.0 * density * DIAMETER * contact * PI.sqrt();
         exact_displacement(friction * time) / (friction * friction) / exact_displacement(time)
+    }
+
+    /// First time at which wrapped positions double the mean square displacement.
+    fn doubling(&self) -> Option<f64> {
+        let doubled = |[unwrapped, wrapped]: &[f64; 2]| *wrapped > 2.0 * unwrapped;
+        self.square.iter().position(doubled).map(|at| self.times[at])
+    }
+
+    /// Probability density of the velocity components in a bin, with its standard error.
+    fn density(&self, bin: f64) -> [f64; 2] {
+        let count = self.velocities.iter().filter(|v| (**v - bin).abs() < 0.5 * BIN).count() as f64;
+        let all = self.velocities.len() as f64 * BIN;
+        [count / all, count.sqrt() / all]
     }
 
     fn end(&self) -> f64 {
@@ -101,6 +122,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
     systems.push(simulate_system(SYSTEMS[0].0, SYSTEMS[0].1, false)?);
     meter.add(1.0);
     let heated = meter.run_cases(&cases, |&(scheme, dt)| measure_heating(scheme, dt))?;
+    let starts = STARTS.into_iter().map(mesh_start).collect::<Result<Vec<_>, _>>()?;
     let [thin, dense, free] = [2, 3, 4].map(|at| &systems[at]);
     let off = thin.times.iter().map(|time| (thin.ratio_to_exact(*time) - 1.0).abs() / thin.standard_error());
     let heating = heated.iter().filter(|it| it.scheme != SchemeKind::AsPrinted);
@@ -117,6 +139,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
             .number("time", 2, |it| it.end())
             .number("⟨r²⟩", 3, |it| it.square[it.times.len() - 1][0])
             .number("⟨r²⟩ wrapped", 3, |it| it.square[it.times.len() - 1][1])
+            .number("first doubled by wrapping", 3, |it| it.doubling())
             .number("temperature", 4, |it| it.temperature)
             .number("p of Maxwell", 3, |it| it.maxwell)
             .frame("displacements", "Displacements over those without pairs, and velocities at the end"),
@@ -132,6 +155,16 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
             })
             .number("by Enskog", 3, |(it, at)| it.has_pairs.then(|| it.enskog_ratio(it.times[*at])))
             .frame("over-time", "Mean square displacement over the time"),
+        FrameBuilder::of((-BINS..=BINS).map(|bin| BIN * f64::from(bin)))
+            .number("velocity", 2, |bin| *bin)
+            .cell("with pairs", |bin| density_cell(dense, *bin))
+            .cell("without pairs", |bin| density_cell(free, *bin))
+            .number("Maxwell", 4, |bin| (-0.5 * bin * bin).exp() / (2.0 * PI).sqrt())
+            .frame("velocities", "Probability density of the velocity components"),
+        FrameBuilder::of(STARTS.into_iter().zip(starts))
+            .count("particles", |(count, _)| *count)
+            .number("potential energy", 3, |(_, energy)| *energy)
+            .frame("starts", "Starts on a shuffled mesh in a box of 100"),
         FrameBuilder::of(&heated)
             .text("scheme", |it| it.scheme.word())
             .number("step over m/γ", 2, |it| it.dt)
@@ -162,7 +195,7 @@ fn simulate_system(particles: u64, side: f64, has_pairs: bool) -> Result<SystemS
         Overrides::new().set(&COUNT, particles).set(&SIDES, [side; 2]).set(&LAW, law).set(&DT, STEP);
     let mut running = RunningScene::begin("langevin-report", &overrides)?;
     let start = running.simulation.particles();
-    let (mut times, mut square) = (vec![], vec![]);
+    let (mut times, mut square, mut velocities) = (vec![], vec![], vec![]);
     for sample in 0.. {
         let time = 0.01 * 10f64.powf(f64::from(sample) / SAMPLES);
         if time > DURATION {
@@ -176,6 +209,9 @@ fn simulate_system(particles: u64, side: f64, has_pairs: bool) -> Result<SystemS
             x * x + y * y
         });
         let inside = inside.sum::<f64>() / particles as f64;
+        if time >= THERMAL {
+            velocities.extend(now.all().iter().flat_map(|it| it.planar_velocity()));
+        }
         times.push(running.simulation.clock().time);
         square.push([running.observed_values(["msd"])?[0], inside]);
     }
@@ -188,7 +224,19 @@ fn simulate_system(particles: u64, side: f64, has_pairs: bool) -> Result<SystemS
         square,
         maxwell: running.maxwell_probability(1.0),
         temperature,
+        velocities,
     })
+}
+
+/// Potential energy at the start on a mesh.
+fn mesh_start(particles: u64) -> Result<f64, StudyError> {
+    let running = RunningScene::begin("langevin-report", &Overrides::new().set(&COUNT, particles))?;
+    Ok(running.observed_values(["potential"])?[0])
+}
+
+fn density_cell(system: &SystemSeries, bin: f64) -> TableCell {
+    let [density, error] = system.density(bin);
+    TableCell::with_error(density, Some(WIDTH * error), 4)
 }
 
 fn measure_heating(scheme: SchemeKind, dt: f64) -> Result<HeatingPoint, StudyError> {
@@ -227,6 +275,7 @@ mod tests {
                 square,
                 maxwell: 0.5,
                 temperature: 1.0,
+                velocities: vec![],
             };
             system.enskog_ratio(20.0)
         });

@@ -1,5 +1,7 @@
-//! Wall time against the number of sectors along a side, on one thread and on two; comparison of searches; time of the phases.
+//! Wall time against the number of sectors along a side, on one thread and on two; comparison of searches; time of the phases and of the
+//! output.
 
+use super::output;
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, TableCell};
 use crate::laboratory::rates::{CaseReading, MeasuredCase, RateCase, StudyWork, measure_rates};
@@ -49,8 +51,8 @@ const COMPARED: f64 = 4000.0;
 const DENSITIES: [f64; 5] = [0.05, 0.2, 0.4, 0.6, 0.7];
 
 /// Measured work other than runs of scenes.
-pub(in crate::laboratory::langevin) static WORKS: [StudyWork; 1] =
-    [StudyWork { name: "langevin-frames", measure: |_| write_frames() }];
+pub(in crate::laboratory::langevin) static WORKS: [StudyWork; 2] =
+    [StudyWork { name: "langevin-frames", measure: |_| write_frames() }, output::WORK];
 
 /// Fluid with its pair law, density N σ²/A, the search chosen by `auto`, and the index of the case of each search that supports it.
 struct SearchedFluid {
@@ -89,12 +91,18 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
             .on_threads(1),
     );
     cases.push(RateCase::own(&WORKS[0], serde_json::Value::Null).label("writing", "frames"));
+    cases.push(RateCase::own(&WORKS[1], serde_json::Value::Null).label("writing", "positions").on_threads(2));
     let all = measure_rates(lab, &cases)?;
-    let [.., phases, written] = all.as_slice() else { return Ok(FinishedItem::default()) };
+    let [.., phases, frames, output] = all.as_slice() else { return Ok(FinishedItem::default()) };
     let part =
         |(name, _): (&String, &f64)| (name.clone(), phases.part(name).cell(1e3 * STEPS * PARTICLES, 2));
     let mut parts: BTreeMap<String, TableCell> = phases.readings[0].parts.iter().map(part).collect();
-    parts.insert("ten frames as text".to_owned(), written.cost().cell(1e3, 2));
+    parts.insert("ten frames as text".to_owned(), frames.cost().cell(1e3, 2));
+    let medians = sides.iter().zip(all.chunks(2)).filter(|(side, _)| side.is_some());
+    let best = medians
+        .flat_map(|(_, threads)| threads.iter().map(|it| it.cost().median))
+        .fold(f64::INFINITY, f64::min);
+    let source_best = SOURCE.iter().flat_map(|(_, source)| *source).fold(f64::INFINITY, f64::min);
     let seconds = |case: &MeasuredCase| case.cost().cell(STEPS * PARTICLES, 4);
     let of_search = |case: usize| all[case].cost().cell(1e6 * COMPARED, 1);
     Ok(FinishedItem::of([
@@ -106,6 +114,10 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
             .number("source", 2, |(side, _)| side.map(|(_, [one, two])| one / two))
             .number("source, 1 (s)", 1, |(side, _)| side.map(|(_, source)| source[0]))
             .number("source, 2 (s)", 1, |(side, _)| side.map(|(_, source)| source[1]))
+            .number("1 thread over the best", 2, |(_, threads)| threads[0].cost().median / best)
+            .number("2 threads over the best", 2, |(_, threads)| threads[1].cost().median / best)
+            .number("source, 1 over its best", 2, |(side, _)| side.map(|(_, source)| source[0] / source_best))
+            .number("source, 2 over its best", 2, |(side, _)| side.map(|(_, source)| source[1] / source_best))
             .frame("wall-time", "Wall time of 100 steps: median and range of three processes"),
         FrameBuilder::of(&fluids)
             .text("pairs", |fluid| fluid.law.word())
@@ -120,6 +132,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
             .text("part", |(name, _)| name.clone())
             .cell("time (ms)", |(_, time)| time.clone())
             .frame("phases", "Where the time goes: 100 steps by lists on one thread"),
+        output::frame(output),
     ])
     .with_seeds([1]))
 }

@@ -2,4 +2,5 @@
 
 pub(super) mod collapse;
 pub(super) mod energy;
+pub(super) mod force;
 pub(super) mod rates;

@@ -17,7 +17,7 @@ pub(crate) const BENCHES: &[Bench] = &[Bench {
     options: bench_options! {
         "particles" [], |count| vec![format!("particles.count={count}")];
         "packing-fraction" [], |fraction| vec![format!("particles.packing_fraction={fraction}")];
-        "engine" ["auto", "fast", "reference"], |engine| vec![format!("machine.engine={engine}")];
+        "engine" ["auto", "fast", "reference", "cell-crossing"], |engine| vec![format!("machine.engine={engine}")];
         "instruction-set" [], |set| vec![format!("machine.instruction_set={set}")];
         "mask" [], |mask| vec![format!("search.mask={mask}")];
     },

@@ -10,8 +10,10 @@ use super::options::EngineChoice;
 use super::overlap_repair::{ROUNDING, StartOverlaps};
 use super::reference::choice::{candidates, mask};
 use super::reference::grid::ExclusiveGridSize;
+use super::reference::linked_cells::CellCounts;
 use super::restored::available_energy;
 use super::scene::HardDiskScene;
+use super::simulation::EngineConfiguration;
 use crate::domain::{BoxSide, Domain};
 use crate::method::{Prepared, Until};
 use crate::number::significant;
@@ -31,8 +33,8 @@ pub(super) struct CheckedHardDisks {
     pub(super) domain: Domain,
     /// Shared with copies of the scene to save memory; none once the only simulation has started.
     pub(super) particles: Arc<Particles>,
-    /// Mask of the reference engine; none for the fast engine.
-    pub(super) mask: Option<Mask>,
+    /// Engine of the simulation.
+    pub(super) engine: EngineConfiguration,
     pub(super) warnings: Vec<Warning>,
     pub(super) choices: Vec<String>,
 }
@@ -72,15 +74,13 @@ pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
     errors.extend(high_floor_error(&values, &scene, &domain, &particles));
     errors.extend(fixed(&values, &particles));
     let mut choices = vec![];
-    let mask = match particles.radii() {
-        Some(radii) => chosen_engine_mask(&values, &mut scene, &domain, radii, &particles, &mut choices),
+    let engine = match particles.radii() {
+        Some(radii) => chosen_engine(&values, &mut scene, &domain, radii, &particles, &mut choices),
         None => Err(values.spot(&RADIUS).error(MistakeKind::Geometry, "there is nothing to simulate")),
     };
-    let mask = mask.unwrap_or_else(|error| {
-        errors.push(error);
-        None
-    });
+    errors.extend(engine.as_ref().err().cloned());
     SceneErrors::ok_if_empty(errors)?;
+    let engine = engine.map_err(|error| SceneErrors(vec![error]))?;
     SceneErrors::ok_if_empty(idle_run_error(&values, &scene, domain, &particles).into_iter().collect())?;
     if let Some(thermal) = &mut scene.law.thermal {
         // Written into the scene if the start has no seed.
@@ -90,7 +90,7 @@ pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
         thermal.seed = noise_seed(&scene.start, thermal.seed, &particles);
     }
     let particles = Arc::new(particles);
-    let checked = CheckedHardDisks { scene, domain, particles, mask, warnings, choices };
+    let checked = CheckedHardDisks { scene, domain, particles, engine, warnings, choices };
     SceneErrors::ok_if_empty(checked.endless(&values).into_iter().collect())?;
     Ok(checked.prepared())
 }
@@ -193,15 +193,15 @@ impl StartingDiscs {
     }
 }
 
-/// Selects the engine. Returns the mask of the reference engine, or none for the fast engine.
-fn chosen_engine_mask(
+/// Selects the engine.
+fn chosen_engine(
     values: &SceneValues,
     scene: &mut HardDiskScene,
     domain: &Domain,
     radii: [f64; 2],
     particles: &Particles,
     choices: &mut Vec<String>,
-) -> Result<Option<Mask>, SceneError> {
+) -> Result<EngineConfiguration, SceneError> {
     let all = particles.all().iter().map(|disc| disc.radius);
     let displacement_limit = fast::displacement_limit(&scene.arena(*domain), all);
     let small = "the box is too small for lists: a disc would list others across two of its sides";
@@ -222,10 +222,41 @@ fn chosen_engine_mask(
         (given, _) => given,
     };
     scene.engine = engine;
-    if engine == EngineChoice::Fast {
-        return Ok(None);
+    match engine {
+        EngineChoice::Auto | EngineChoice::Fast => Ok(EngineConfiguration::Fast(scene.instructions())),
+        EngineChoice::Reference => {
+            let mask = chosen_mask(values, scene, domain, radii, particles.len(), choices)?;
+            Ok(EngineConfiguration::Reference(mask))
+        }
+        EngineChoice::CellCrossing => {
+            linked_cells(values, scene, domain, radii, particles.len()).map(EngineConfiguration::CellCrossing)
+        }
     }
-    chosen_mask(values, scene, domain, radii, particles.len(), choices).map(Some)
+}
+
+/// Linked cells of a box.
+fn linked_cells(
+    values: &SceneValues,
+    scene: &HardDiskScene,
+    domain: &Domain,
+    [_, largest]: [f64; 2],
+    count: usize,
+) -> Result<CellCounts, SceneError> {
+    if scene.open_top {
+        let message =
+            "the engine cell-crossing needs cells for the whole box, but `domain.open_top` has no upper end";
+        let error = values.spot(&ENGINE).error(MistakeKind::Contradiction, message);
+        return Err(error.expecting("engine = \"fast\", \"reference\" or \"auto\", or open_top = false"));
+    }
+    CellCounts::new(domain, count, largest, scene.discs_in_cell).ok_or_else(|| {
+        let [x, y] = domain.lengths().map(|side| significant(side, 5));
+        let message = format!(
+            "the box of {x} × {y} is too small for linked cells: a periodic side needs four, each as wide as the largest disc, {}",
+            significant(2.0 * largest, 5)
+        );
+        let error = values.spot(&ENGINE).error(MistakeKind::Geometry, message);
+        error.expecting("engine = \"reference\" or \"auto\", or a larger box")
+    })
 }
 
 /// Returns the requested mask, or the cheapest one.

@@ -13,6 +13,7 @@ use crate::scene::{
 use crate::words::Words;
 
 const ALWAYS: Use = None;
+const CROSSED: Use = Some((&ENGINE, &["cell-crossing"]));
 const HEATED: Use = Some((&THERMAL_SIDE, &["left", "right", "bottom", "top"]));
 /// Maximum number of events of a run.
 pub(super) const MOST_EVENTS: u64 = 1_000_000_000_000_000;
@@ -47,10 +48,13 @@ define_keys! {
         "Removes the ceiling: the upper end of the second side is open, and gravity points down.";
 
     ENGINE = "machine" "engine", Choice(EngineChoice::WORDS), "", Is("\"auto\""), ALWAYS,
-        "Search for events; both engines give the same bits. fast keeps a neighbour list for each disc; reference uses masks over the exclusive grid, as in ISO99. auto is fast, unless a mask is given or the box is too small for lists.";
+        "Search for events; all engines give the same bits. fast keeps a neighbour list for each disc; reference uses masks over the exclusive grid, as in ISO99; cell-crossing uses linked cells with crossing events, the rival in ISO99. auto is fast, unless a mask is given or the box is too small for lists.";
 
     MASK = "search" "mask", Choice(MASKS), "", Is("\"auto\""), ALWAYS,
         "Mask of cells in which a disc searches for partners: min is 5 × 5, r3 to r10 are round masks of these radii. A larger mask needs fewer refills of the grid; auto takes the cheapest by ISO99's cost formula.";
+
+    DISCS_IN_CELL = "search" "discs_in_cell", Number(Positive), "", Is("1.0"), CROSSED,
+        "Mean number of discs in a linked cell. Fewer need fewer predictions of pairs and more crossings; a cell is at least as wide as the largest disc.";
 
     COLLISION_LOG = "output" "collisions", Switch, "", Is("false"), ALWAYS,
         "Writes each collision as a row of events.csv: time, discs, point of contact, impulse and the free times before it.";

@@ -11,5 +11,7 @@ define_words! {
         Fast = "fast",
         /// Masks over the exclusive grid, as in ISO99.
         Reference = "reference",
+        /// Linked cells with crossing events, the rival of ISO99.
+        CellCrossing = "cell-crossing",
     }
 }

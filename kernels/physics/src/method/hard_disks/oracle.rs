@@ -5,6 +5,7 @@ use super::event::{Arena, CollisionLaw, ThermalWall};
 use super::fast::{Fast, displacement_limit};
 use super::floor::Floor;
 use super::reference;
+use super::reference::linked_cells::CellCounts;
 use crate::domain::{BoxSide, Domain};
 use rand::RngExt;
 use stripmine_kernels::InstructionSet;
@@ -79,9 +80,22 @@ fn reference_engine(arena: Arena, discs: &[FlyingDisc], mask: &Mask) -> Box<dyn 
     engine
 }
 
-/// Reference engines with several masks, and fast engines with every instruction set.
+/// Engine by cell crossing at the time 0, with about `discs_in_cell` in a linked cell.
+fn cell_crossing_engine(arena: Arena, discs: &[FlyingDisc], discs_in_cell: f64) -> Box<dyn EventEngine> {
+    let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
+    let counts = CellCounts::new(&arena.domain, discs.len(), largest, discs_in_cell).unwrap();
+    let mut engine = reference::cell_crossing_engine(arena, discs.to_vec(), counts, 0.0);
+    engine.begin().unwrap();
+    engine
+}
+
+/// Engines by cell crossing, reference engines with several masks, and fast engines with every instruction set.
 fn engines(arena: Arena, discs: &[FlyingDisc]) -> Vec<(String, Box<dyn EventEngine>)> {
     let mut engines: Vec<(String, Box<dyn EventEngine>)> = vec![];
+    for discs_in_cell in [0.5, 3.0].into_iter().filter(|_| arena.domain.sides[1] != BoxSide::Open) {
+        let name = format!("{discs_in_cell} discs in a cell");
+        engines.push((name, cell_crossing_engine(arena, discs, discs_in_cell)));
+    }
     for mask in [Mask::square(2), Mask::round(3), Mask::round(4)] {
         let name = format!("{} offsets", mask.offsets().len());
         engines.push((name, reference_engine(arena, discs, &mask)));
@@ -267,7 +281,7 @@ fn fast_engine_matches_for_wide_sizes() {
     }
 }
 
-/// Both engines find the same 10⁶ events: at three densities, with polydisperse discs that lose energy, and under gravity.
+/// All engines find the same 10⁶ events: at three densities, with polydisperse discs that lose energy, and under gravity.
 #[test]
 #[ignore = "long: cargo test --workspace --lib -- --ignored engines_agree"]
 fn engines_agree_over_a_million_events() {
@@ -288,10 +302,15 @@ fn engines_agree_over_a_million_events() {
         let arena = Arena::new(domain, gravity, law);
         let discs = random(&domain, 400, spread, 8);
         let mut source = reference_engine(arena, &discs, &Mask::round(3));
-        let mut fast = fast_engine(arena, &discs, InstructionSet::best());
+        let mut rivals: [Box<dyn EventEngine>; 2] = [
+            Box::new(fast_engine(arena, &discs, InstructionSet::best())),
+            cell_crossing_engine(arena, &discs, 1.0),
+        ];
         for number in 0..1_000_000 {
             let one = source.next(f64::INFINITY, u64::MAX).unwrap();
-            assert_eq!(one, fast.next(f64::INFINITY, u64::MAX).unwrap(), "event {number}, {domain:?}");
+            for engine in &mut rivals {
+                assert_eq!(one, engine.next(f64::INFINITY, u64::MAX).unwrap(), "event {number}, {domain:?}");
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use super::checked::{CheckedHardDisks, StartingDiscs};
 use super::collision_log::COLUMNS;
 use super::forecast::{enskog_collision_rate, nanoseconds_per_collision, thermal_speed};
 use super::reference::grid::ExclusiveGridSize;
+use super::reference::linked_cells::CellCounts;
 use super::simulation::{EngineConfiguration, HardDiskSimulation, RecordOptions};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
@@ -61,11 +62,8 @@ impl CheckedHardDisks {
             logs: is_run && self.scene.collision_log,
             follows: is_run && self.scene.output.follows_motion(),
         };
-        let engine = match &self.mask {
-            Some(mask) => EngineConfiguration::Reference(mask.clone()),
-            None => EngineConfiguration::Fast(self.scene.instructions()),
-        };
-        Ok(Box::new(HardDiskSimulation::new(self.scene.arena(self.domain), engine, discs, observed)?))
+        let arena = self.scene.arena(self.domain);
+        Ok(Box::new(HardDiskSimulation::new(arena, self.engine.clone(), discs, observed)?))
     }
 
     fn facts(&self) -> Vec<Fact> {
@@ -100,10 +98,16 @@ impl CheckedHardDisks {
             let state = if self.scene.start.seed().is_none() { ", with the state at the start" } else { "" };
             facts.push(Fact::new("noise_seed", seed, "seed of the thermal side", format!("{seed}{state}")));
         }
-        if let Some(mask) = &self.mask {
-            let [columns, rows] = ExclusiveGridSize::new(&self.domain, low).cells;
+        let counts = match &self.engine {
+            EngineConfiguration::Fast(_) => None,
+            EngineConfiguration::Reference(_) => Some(ExclusiveGridSize::new(&self.domain, low).cells),
+            EngineConfiguration::CellCrossing(CellCounts(counts)) => Some(*counts),
+        };
+        if let Some([columns, rows]) = counts {
             let cells = format!("{columns} × {rows} = {}", columns * rows);
             facts.push(Fact::new("cells", columns * rows, "cells", cells));
+        }
+        if let EngineConfiguration::Reference(mask) = &self.engine {
             let places = format!("{}, {} offsets", self.scene.mask, mask.offsets().len());
             facts.push(Fact::new("mask", self.scene.mask.as_str(), "mask", places));
         }
@@ -112,16 +116,20 @@ impl CheckedHardDisks {
 
     fn memory(&self) -> MemoryForecast {
         let discs = self.particles.len() as f64;
-        let of_engine = match &self.mask {
-            Some(mask) => {
+        let of_engine = match &self.engine {
+            // Disc, event, node, chain, cell and crossing.
+            EngineConfiguration::CellCrossing(CellCounts([columns, rows])) => {
+                4.0 * (columns * rows) as f64 + (64.0 + 16.0 + 8.0 + 4.0 + 8.0 + 16.0) * discs
+            }
+            EngineConfiguration::Reference(mask) => {
                 let sizes =
                     ExclusiveGridSize::new(&self.domain, self.particles.radii().map_or(1.0, |[low, _]| low));
                 let margin = 2 * mask.half_width() as usize;
                 let cells: f64 = sizes.cells.iter().map(|&cells| (cells + margin) as f64).product();
-                // Disc, event, node, cell, position and speed.
-                4.0 * cells + (64.0 + 16.0 + 8.0 + 4.0 + 24.0 + 8.0) * discs
+                // Disc, event, node and cell.
+                4.0 * cells + (64.0 + 16.0 + 8.0 + 4.0) * discs
             }
-            None => {
+            EngineConfiguration::Fast(_) => {
                 // Disc, list, position, time, partner and number; both coordinates and the disc of 2.1 slots of cells.
                 let columns = [64.0, 64.0, 16.0, 8.5, 8.0, 4.0, 8.4, 8.4, 8.4];
                 let places = size_of::<u32>() as f64 * discs;
@@ -147,11 +155,12 @@ impl CheckedHardDisks {
     }
 
     fn settings(&self) -> Map<String, Value> {
+        let is_reference = matches!(self.engine, EngineConfiguration::Reference(_));
         let settings = [
             ("packing_fraction", json!(self.packing_fraction())),
             ("precision", json!("f64")),
             ("engine", json!(self.scene.engine.word())),
-            ("mask", json!(self.mask.as_ref().map(|_| &self.scene.mask))),
+            ("mask", json!(is_reference.then_some(&self.scene.mask))),
             ("instruction_set", json!(self.scene.instructions().name())),
             ("restitution", json!(self.scene.law.restitution)),
         ];
@@ -180,7 +189,7 @@ impl Startable for CheckedHardDisks {
         self.start_with(self.discs(), purpose)
     }
 
-    fn start_only(mut self: Box<Self>, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
+    fn start_last(&mut self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
         let discs = self.discs();
         // Before the engine takes its memory.
         self.particles = Arc::default();

@@ -33,6 +33,8 @@ pub(super) struct HardDiskScene {
     pub instruction_set: Option<InstructionSet>,
     /// Name of the mask.
     pub mask: String,
+    /// Mean number of discs in a linked cell.
+    pub(super) discs_in_cell: f64,
     /// Duration and output intervals.
     pub run: HardDiskRun,
     /// Output files.
@@ -68,6 +70,7 @@ impl Default for HardDiskScene {
             engine: EngineChoice::default(),
             instruction_set: None,
             mask: String::new(),
+            discs_in_cell: 1.0,
             run: HardDiskRun {
                 until: Until::Events(0),
                 target: None,
@@ -129,6 +132,9 @@ impl HardDiskScene {
         binding.choice(&ENGINE, &mut self.engine);
         bind_instructions(binding, &mut self.instruction_set);
         binding.word(&MASK, &mut self.mask);
+        if self.engine == EngineChoice::CellCrossing {
+            binding.number(&DISCS_IN_CELL, &mut self.discs_in_cell);
+        }
         self.run.bind(binding);
         self.output.bind(binding);
         binding.switch(&COLLISION_LOG, &mut self.collision_log);

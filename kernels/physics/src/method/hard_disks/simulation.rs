@@ -12,6 +12,7 @@ use super::identities::DiscIdentities;
 use super::idle::is_idle_forever;
 use super::quantities::{HardDiskObservation, OBSERVABLES};
 use super::reference;
+use super::reference::linked_cells::CellCounts;
 use super::restored::check_restored_discs;
 use super::sums::{CollisionTotals, IntervalMark, IntervalMeans, TotalMotion};
 use crate::io::checkpoint::CheckpointColumn;
@@ -68,6 +69,7 @@ pub(super) struct RecordOptions {
 pub(super) enum EngineConfiguration {
     Fast(InstructionSet),
     Reference(Mask),
+    CellCrossing(CellCounts),
 }
 
 impl EngineConfiguration {
@@ -75,6 +77,9 @@ impl EngineConfiguration {
         match self {
             EngineConfiguration::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)),
             EngineConfiguration::Reference(mask) => reference::engine(arena, discs, mask, time),
+            EngineConfiguration::CellCrossing(counts) => {
+                reference::cell_crossing_engine(arena, discs, *counts, time)
+            }
         }
     }
 }

@@ -3,6 +3,8 @@
 //! All cells of a closed box are stored. Without a ceiling (`half_space`) only the occupied cells are.
 
 use crate::domain::{BoxSide, Domain};
+use crate::method::hard_disks::event::Arena;
+use stripmine_kernels::flight::FlyingDisc;
 use stripmine_kernels::mask::Mask;
 
 /// Marks an empty cell.
@@ -39,6 +41,11 @@ impl ExclusiveGridSize {
         ((from_low / self.edge[axis]) as usize).min(self.cells[axis] - 1)
     }
 
+    /// Centre of a cell along an axis, from the lower end (length).
+    pub(super) fn centre(&self, axis: usize, cell: usize) -> f64 {
+        (cell as f64 + 0.5) * self.edge[axis]
+    }
+
     /// Distance within which a mask contains every other disc (length): r_NL.
     pub(crate) fn reach(&self, mask: &Mask) -> f64 {
         f64::from(mask.reach_squared()).sqrt() * self.edge[0].min(self.edge[1])
@@ -51,22 +58,36 @@ impl ExclusiveGridSize {
     }
 }
 
-/// Assignment of discs to cells at the last fill.
+/// Assignment of discs to cells. It holds until the next fill, unless discs cross their cells by events of their own.
 pub(crate) trait DiscCells: Send {
-    /// Assigns every disc to the cell of its position inside the box (length).
+    /// Assigns every disc, in the order of their numbers, to the cell of its position inside the box (length).
     ///
     /// # Errors
     /// [`CellMisfit`] if two discs share a cell or one is too high.
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit>;
+    fn fill(&mut self, places: impl Iterator<Item = [f64; 2]>) -> Result<(), CellMisfit>;
 
-    /// Position of a disc at the last fill (length).
-    fn position_at_fill(&self, disc: u32) -> [f64; 2];
+    /// Centre of the cell of a disc (length). Filling the cells with the centres assigns the same cells.
+    fn centre(&self, disc: u32) -> [f64; 2];
 
-    /// Iterates over the discs in the mask around one.
-    fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_;
+    /// Visits the discs in the cells around a disc and in its own.
+    fn for_each_around(&self, disc: u32, visit: impl FnMut(u32));
 
     /// Name and value of the cells for the summary of a run.
     fn figure(&self) -> (&'static str, f64);
+
+    /// Predicts when a disc leaves its cell, after its motion or its cell has changed at `now` (time).
+    fn predict_crossing(&mut self, _arena: &Arena, _number: u32, _disc: &FlyingDisc, _now: f64) {}
+
+    /// Time at which a disc leaves its cell; infinite if cells hold until the next fill.
+    fn crossing_time(&self, _disc: u32) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Moves a disc to the cell that it enters at its crossing time.
+    fn cross(&mut self, _disc: u32) {}
+
+    /// Visits the discs in the cells around a disc that were not around it before it crossed.
+    fn for_each_entered(&self, _disc: u32, _visit: impl FnMut(u32)) {}
 }
 
 /// Reason why discs cannot be assigned to cells.
@@ -90,8 +111,6 @@ pub(crate) struct ExclusiveGrid {
     discs: Vec<u32>,
     /// The cell of each disc.
     cell: Vec<u32>,
-    /// Position of each disc at the last fill (length).
-    places: Vec<[f64; 2]>,
     /// Offsets from a cell to the cells of its mask.
     offsets: Vec<isize>,
 }
@@ -109,9 +128,18 @@ impl ExclusiveGrid {
             width,
             discs: vec![EMPTY; width * height],
             cell: vec![],
-            places: vec![],
             offsets: mask.offsets().iter().map(|it| offset(it.columns, it.rows)).collect(),
         }
+    }
+
+    /// Number of discs.
+    pub(super) fn count(&self) -> u32 {
+        self.cell.len() as u32
+    }
+
+    /// Memory of the arrays (bytes).
+    pub(super) fn bytes(&self) -> usize {
+        4 * (self.discs.len() + self.cell.len())
     }
 
     /// Copies cells across periodic sides into the margins.
@@ -132,10 +160,10 @@ impl ExclusiveGrid {
 }
 
 impl DiscCells for ExclusiveGrid {
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), CellMisfit> {
+    fn fill(&mut self, places: impl Iterator<Item = [f64; 2]>) -> Result<(), CellMisfit> {
         self.discs.fill(EMPTY);
         self.cell.clear();
-        for (number, at) in places.iter().enumerate() {
+        for (number, at) in places.enumerate() {
             let [column, row] =
                 [0, 1].map(|axis| self.sizes.along(axis, at[axis] - self.domain.origin[axis]) + self.margin);
             let cell = row * self.width + column;
@@ -145,21 +173,21 @@ impl DiscCells for ExclusiveGrid {
             self.discs[cell] = number as u32;
             self.cell.push(cell as u32);
         }
-        self.places = places;
         self.mirror();
         Ok(())
     }
 
-    #[inline(always)]
-    fn position_at_fill(&self, disc: u32) -> [f64; 2] {
-        self.places[disc as usize]
+    fn centre(&self, disc: u32) -> [f64; 2] {
+        let cell = self.cell[disc as usize] as usize;
+        let cell = [cell % self.width, cell / self.width].map(|along| along - self.margin);
+        [0, 1].map(|axis| self.domain.origin[axis] + self.sizes.centre(axis, cell[axis]))
     }
 
     #[inline(always)]
-    fn around(&self, disc: u32) -> impl Iterator<Item = u32> + '_ {
+    fn for_each_around(&self, disc: u32, visit: impl FnMut(u32)) {
         let cell = self.cell[disc as usize] as usize;
-        let there = move |&offset: &isize| self.discs[cell.wrapping_add_signed(offset)];
-        self.offsets.iter().map(there).filter(|&other| other != EMPTY)
+        let there = |&offset: &isize| self.discs[cell.wrapping_add_signed(offset)];
+        self.offsets.iter().map(there).filter(|&other| other != EMPTY).for_each(visit);
     }
 
     /// Mean number of discs per cell.
@@ -199,9 +227,10 @@ mod tests {
                 }
             }
             let mut grid = ExclusiveGrid::new(domain, sizes, &mask);
-            grid.fill(discs.clone()).unwrap();
+            grid.fill(discs.iter().copied()).unwrap();
             for (number, here) in discs.iter().enumerate() {
-                let seen: Vec<u32> = grid.around(number as u32).collect();
+                let mut seen = vec![];
+                grid.for_each_around(number as u32, |other| seen.push(other));
                 for (other, there) in discs.iter().enumerate().filter(|(other, _)| *other != number) {
                     let distance = domain.distance(*here, *there);
                     assert!(distance >= sizes.reach(&mask) || seen.contains(&(other as u32)), "{distance}");
@@ -214,7 +243,7 @@ mod tests {
     fn shared_cells_are_reported() {
         let domain = Domain::planar([0.0; 2], [10.0; 2], [true; 2]);
         let mut grid = ExclusiveGrid::new(domain, ExclusiveGridSize::new(&domain, 0.5), &Mask::square(2));
-        let places = vec![[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]];
-        assert_eq!(grid.fill(places), Err(CellMisfit::Shared([0, 2])));
+        let places = [[5.0, 5.0], [1.0, 1.0], [5.01, 5.01]];
+        assert_eq!(grid.fill(places.into_iter()), Err(CellMisfit::Shared([0, 2])));
     }
 }

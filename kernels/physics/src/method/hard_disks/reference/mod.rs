@@ -1,12 +1,18 @@
-//! Reference engine (ISO99): local minima over masks of the exclusive grid, a complete binary tree, local times, and no
-//! cell-crossing events.
+//! Engines by ISO99: the next event of each disc, a complete binary tree that finds the first of them, and local times.
+//!
+//! Two kinds of cells find the partners of a disc, and everything else is the same:
+//!
+//! - the *reference* searches masks of the exclusive grid, which is filled again before a mask misses a partner. No disc crosses a cell.
+//! - *cell crossing* searches linked cells, and a disc that enters a cell is an event. It is the rival of the paper's section 4.
 
 pub mod choice;
 pub(crate) mod grid;
 mod half_space;
+pub(super) mod linked_cells;
 mod tournament;
+pub mod trial;
 
-use super::engine::{EngineError, EventEngine, EventObserver, EventPartner, ExecutedEvent, FlyingDiscs};
+use super::engine::{EngineError, EventEngine, EventObserver, ExecutedEvent, FlyingDiscs};
 use super::event::Arena;
 use super::operations::Operations;
 use crate::domain::BoxSide;
@@ -14,21 +20,34 @@ use crate::io::checkpoint::CheckpointColumn;
 use crate::method::Snapshot;
 use grid::{CellMisfit, DiscCells, ExclusiveGrid, ExclusiveGridSize};
 use half_space::HalfSpaceGrid;
+use linked_cells::{CellCounts, LinkedCells};
 use stripmine_kernels::flight::{FlyingDisc, Space, collision_time};
 use stripmine_kernels::mask::Mask;
 use tournament::TournamentTree;
 
-/// Predicted next event of a disc.
+/// Code of a wall across the first axis; that of the second one follows. Smaller codes are numbers of discs.
+const WALL: u32 = u32::MAX - 1;
+
+/// Predicted next collision of a disc with another one or a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PredictedEvent {
     /// Time of the event; infinite if none.
     time: f64,
-    with: EventPartner,
+    /// Number of the other disc, or code of a wall.
+    with: u32,
+    /// Events of the other disc before the prediction. It is invalid if there are more when it is due.
+    events: u32,
 }
 
 impl PredictedEvent {
     /// No event.
-    const NONE: PredictedEvent = PredictedEvent { time: f64::INFINITY, with: EventPartner::Wall(0) };
+    const NONE: PredictedEvent = PredictedEvent { time: f64::INFINITY, with: WALL, events: 0 };
+
+    /// Collision with a disc.
+    #[inline(always)]
+    fn with_disc(time: f64, number: u32, disc: &FlyingDisc) -> PredictedEvent {
+        PredictedEvent { time, with: number, events: disc.events as u32 }
+    }
 
     /// True if it precedes another event of the same disc; of two at one time, the one with the smaller partner comes first.
     #[inline(always)]
@@ -39,10 +58,10 @@ impl PredictedEvent {
 
 /// Engine over cells of type `C`.
 #[derive(Clone, Debug)]
-pub(crate) struct ReferenceEngine<C> {
+pub(crate) struct TournamentEngine<C> {
     arena: Arena,
     discs: Vec<FlyingDisc>,
-    grid: C,
+    cells: C,
     events: Vec<PredictedEvent>,
     tree: TournamentTree,
     /// Time of the last event, or the time up to which there is none.
@@ -54,18 +73,17 @@ pub(crate) struct ReferenceEngine<C> {
     fastest: f64,
     /// r_NL − 2 σ_max (length): the slack of a new grid.
     whole_slack: f64,
-    /// Number of fills of the grid.
+    /// Number of fills of the cells, and of crossings of a cell.
     remaps: u64,
+    crossings: u64,
     operations: Operations,
     /// Discs that have lost their partner in the current event.
     lost: Vec<u32>,
     /// Time of the last fill. Speeds are measured in a frame that falls freely from then on, so gravity does not change them.
     filled: f64,
-    /// Speeds of the discs at the last fill (length/time).
-    speeds: Vec<f64>,
 }
 
-/// Checkpoint columns of the positions at the last fill.
+/// Checkpoint columns of the cells: a position in the cell of each disc.
 const FILLED_AT: [&str; 2] = ["filled.x", "filled.y"];
 /// Checkpoint names of the sums of the engine.
 const SUMS: [&str; 5] = ["engine.time", "engine.slack", "engine.since", "engine.fastest", "engine.filled"];
@@ -81,21 +99,32 @@ pub(crate) fn engine(arena: Arena, discs: Vec<FlyingDisc>, mask: &Mask, time: f6
     match arena.domain.sides[1] {
         BoxSide::Open => {
             let cells = HalfSpaceGrid::new(arena.domain, sizes, mask);
-            Box::new(ReferenceEngine::new(arena, discs, cells, reach, time))
+            Box::new(TournamentEngine::new(arena, discs, cells, reach, time))
         }
         _ => {
             let cells = ExclusiveGrid::new(arena.domain, sizes, mask);
-            Box::new(ReferenceEngine::new(arena, discs, cells, reach, time))
+            Box::new(TournamentEngine::new(arena, discs, cells, reach, time))
         }
     }
 }
 
-impl<C: DiscCells> ReferenceEngine<C> {
-    /// Takes the discs at a time; the cells contain every other disc within `reach` (length) of a disc.
-    fn new(arena: Arena, discs: Vec<FlyingDisc>, grid: C, reach: f64, time: f64) -> ReferenceEngine<C> {
+/// Takes the discs at a time, over linked cells with crossing events.
+pub(crate) fn cell_crossing_engine(
+    arena: Arena,
+    discs: Vec<FlyingDisc>,
+    counts: CellCounts,
+    time: f64,
+) -> Box<dyn EventEngine> {
+    let cells = LinkedCells::new(arena.domain, counts);
+    Box::new(TournamentEngine::new(arena, discs, cells, f64::INFINITY, time))
+}
+
+impl<C: DiscCells> TournamentEngine<C> {
+    /// Takes the discs at a time; the cells contain every other disc within `reach` (length) of a disc, infinite if they do at any time.
+    fn new(arena: Arena, discs: Vec<FlyingDisc>, cells: C, reach: f64, time: f64) -> TournamentEngine<C> {
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
-        ReferenceEngine {
-            grid,
+        TournamentEngine {
+            cells,
             events: vec![PredictedEvent::NONE; discs.len()],
             tree: TournamentTree::new(discs.len(), |_| f64::INFINITY),
             arena,
@@ -106,10 +135,10 @@ impl<C: DiscCells> ReferenceEngine<C> {
             fastest: 0.0,
             whole_slack: reach - 2.0 * largest,
             remaps: 0,
+            crossings: 0,
             operations: Operations::default(),
             lost: vec![],
             filled: time,
-            speeds: vec![],
         }
     }
 
@@ -119,26 +148,34 @@ impl<C: DiscCells> ReferenceEngine<C> {
     }
 
     fn execute_event(&mut self, first: u32, event: PredictedEvent) -> ExecutedEvent {
-        let PredictedEvent { time, with } = event;
-        match with {
-            EventPartner::Wall(axis) => {
-                let disc = &mut self.discs[first as usize];
-                let happened = ExecutedEvent::at_wall(&self.arena, (first, disc), axis, time);
-                self.update_speed_bound(first);
-                self.repredict([first, first]);
-                happened
-            }
-            EventPartner::Disc(other) => {
-                let [a, b] = [first.min(other), first.max(other)];
-                let (left, right) = self.discs.split_at_mut(b as usize);
-                let pair = ((a, &mut left[a as usize]), (b, &mut right[0]));
-                let happened = ExecutedEvent::collision(&self.arena, pair.0, pair.1, time);
-                self.update_speed_bound(a);
-                self.update_speed_bound(b);
-                self.repredict([a, b]);
-                happened
-            }
+        let PredictedEvent { time, with, .. } = event;
+        if with >= WALL {
+            let disc = &mut self.discs[first as usize];
+            let happened = ExecutedEvent::at_wall(&self.arena, (first, disc), (with - WALL) as u8, time);
+            self.update_speed_bound(first);
+            self.repredict([first, first]);
+            return happened;
         }
+        let [a, b] = [first.min(with), first.max(with)];
+        let (left, right) = self.discs.split_at_mut(b as usize);
+        let pair = ((a, &mut left[a as usize]), (b, &mut right[0]));
+        let happened = ExecutedEvent::collision(&self.arena, pair.0, pair.1, time);
+        self.update_speed_bound(a);
+        self.update_speed_bound(b);
+        self.repredict([a, b]);
+        happened
+    }
+
+    /// Time at which something is due for a disc: its collision, or the crossing of its cell.
+    #[inline(always)]
+    fn due_time(cells: &C, events: &[PredictedEvent], disc: u32) -> f64 {
+        events[disc as usize].time.min(cells.crossing_time(disc))
+    }
+
+    /// True if the partner of a collision has had another event since the prediction.
+    #[inline(always)]
+    fn is_outdated(&self, event: &PredictedEvent) -> bool {
+        self.discs.get(event.with as usize).is_some_and(|other| other.events as u32 != event.events)
     }
 
     /// Applies the dynamic upper cut-off: a new fastest disc shortens the time for which the masks are complete.
@@ -165,81 +202,121 @@ impl<C: DiscCells> ReferenceEngine<C> {
         for &disc in if a == b { &changed[..1] } else { &changed[..] } {
             let mut own = self.at_wall(disc);
             self.operations.searches += 1;
-            let ReferenceEngine { grid, discs, events, tree, arena, operations, .. } = self;
-            for other in grid.around(disc) {
+            let TournamentEngine { cells, discs, events, tree, arena, operations, .. } = self;
+            cells.for_each_around(disc, |other| {
                 operations.predictions += 1;
                 let time = pair(&arena.space, discs, [disc, other], now, horizon);
-                let theirs = PredictedEvent { time, with: EventPartner::Disc(other) };
+                let theirs = PredictedEvent::with_disc(time, other, &discs[other as usize]);
                 if theirs.is_before(&own) {
                     own = theirs;
                 }
                 if other == a || other == b {
-                    continue;
+                    return;
                 }
                 let known = events[other as usize];
-                let ours = PredictedEvent { time, with: EventPartner::Disc(disc) };
-                if known.with == EventPartner::Disc(disc) {
+                let ours = PredictedEvent::with_disc(time, disc, &discs[disc as usize]);
+                if known.with == disc {
                     lost.push(other);
                 } else if ours.is_before(&known) {
                     events[other as usize] = ours;
-                    tree.update(other, events.len(), |disc| events[disc as usize].time);
+                    tree.update(other, events.len(), |disc| Self::due_time(cells, events, disc));
                     operations.queue_moves += 1;
                 }
-            }
+            });
+            self.cells.predict_crossing(&self.arena, disc, &self.discs[disc as usize], now);
             self.renew(disc, own);
         }
         for disc in lost.drain(..) {
-            self.operations.searches += 1;
-            self.operations.repairs += 1;
-            self.operations.predictions += self.grid.around(disc).count() as u64;
-            self.renew(disc, self.predicted_event(disc));
+            self.repair(disc);
         }
         self.lost = lost;
     }
 
+    /// Finds the next event of a disc whose partner has had another event first.
+    fn repair(&mut self, disc: u32) {
+        self.operations.searches += 1;
+        self.operations.repairs += 1;
+        let mut predictions = 0;
+        self.cells.for_each_around(disc, |_| predictions += 1);
+        self.operations.predictions += predictions;
+        self.renew(disc, self.predicted_event(disc));
+    }
+
+    /// Moves a disc to the cell that it enters, and predicts its collisions with the discs that it did not see before.
+    fn cross(&mut self, disc: u32) {
+        let (now, horizon) = (self.time, self.horizon());
+        self.crossings += 1;
+        self.operations.cell_updates += 1;
+        let mut own = self.events[disc as usize];
+        self.cells.cross(disc);
+        let TournamentEngine { cells, discs, events, tree, arena, operations, .. } = self;
+        cells.for_each_entered(disc, |other| {
+            operations.predictions += 1;
+            let time = pair(&arena.space, discs, [disc, other], now, horizon);
+            let theirs = PredictedEvent::with_disc(time, other, &discs[other as usize]);
+            if theirs.is_before(&own) {
+                own = theirs;
+            }
+            let ours = PredictedEvent::with_disc(time, disc, &discs[disc as usize]);
+            if ours.is_before(&events[other as usize]) {
+                events[other as usize] = ours;
+                tree.update(other, events.len(), |disc| Self::due_time(cells, events, disc));
+                operations.queue_moves += 1;
+            }
+        });
+        self.cells.predict_crossing(&self.arena, disc, &self.discs[disc as usize], now);
+        self.renew(disc, own);
+    }
+
     /// Replaces the next event of a disc.
     fn renew(&mut self, disc: u32, event: PredictedEvent) {
-        let ReferenceEngine { events, tree, .. } = self;
+        let TournamentEngine { events, tree, cells, .. } = self;
         events[disc as usize] = event;
-        tree.update(disc, events.len(), |disc| events[disc as usize].time);
+        tree.update(disc, events.len(), |disc| Self::due_time(cells, events, disc));
         self.operations.queue_moves += 1;
     }
 
     fn at_wall(&self, disc: u32) -> PredictedEvent {
         let (time, axis) = self.arena.wall(&self.discs[disc as usize]);
-        PredictedEvent { time, with: EventPartner::Wall(axis as u8) }
+        PredictedEvent { time, with: WALL + axis as u32, events: 0 }
     }
 
-    /// Predicts the next event of a disc among all discs in its mask.
+    /// Predicts the next event of a disc among all discs around it.
     fn predicted_event(&self, disc: u32) -> PredictedEvent {
         let horizon = self.horizon();
-        self.grid.around(disc).fold(self.at_wall(disc), |next, other| {
+        let mut next = self.at_wall(disc);
+        self.cells.for_each_around(disc, |other| {
             let time = pair(&self.arena.space, &self.discs, [disc, other], self.time, horizon);
-            let event = PredictedEvent { time, with: EventPartner::Disc(other) };
-            if event.is_before(&next) { event } else { next }
-        })
+            let event = PredictedEvent::with_disc(time, other, &self.discs[other as usize]);
+            if event.is_before(&next) {
+                next = event;
+            }
+        });
+        next
     }
 
-    /// Assigns the discs to the cells of their positions (length).
-    fn fill(&mut self, places: Vec<[f64; 2]>) -> Result<(), EngineError> {
-        self.grid.fill(places).map_err(|why| match why {
+    /// Predicts when each disc leaves its cell, and builds the tree.
+    fn begin_tournament(&mut self) {
+        for (disc, number) in self.discs.iter().zip(0..) {
+            self.cells.predict_crossing(&self.arena, number, disc, self.time);
+        }
+        let TournamentEngine { cells, events, tree, .. } = self;
+        tree.renew(events.len(), |disc| Self::due_time(cells, events, disc));
+    }
+
+    /// Fills the cells with the discs at a time, and predicts the next event of each.
+    fn remap(&mut self, time: f64) -> Result<(), EngineError> {
+        let TournamentEngine { cells, discs, arena, .. } = self;
+        let filled = cells.fill(discs.iter().map(|disc| arena.position_at(disc, time)));
+        filled.map_err(|why| match why {
             CellMisfit::Shared(pair) => EngineError::SharedCell(pair),
             CellMisfit::TooHigh(disc, blocks) => EngineError::TooHigh(disc, blocks),
-        })
-    }
-
-    /// Fills the grid with the discs at a time, and predicts the next event of each.
-    fn remap(&mut self, time: f64) -> Result<(), EngineError> {
-        self.fill(self.discs.iter().map(|disc| self.arena.position_at(disc, time)).collect())?;
+        })?;
         self.time = time;
         self.since = time;
         self.slack = self.whole_slack;
         self.filled = time;
-        let mut speeds = std::mem::take(&mut self.speeds);
-        speeds.clear();
-        speeds.extend(self.discs.iter().map(|disc| self.speed(disc)));
-        self.fastest = speeds.iter().copied().fold(0.0, f64::max);
-        self.speeds = speeds;
+        self.fastest = self.discs.iter().map(|disc| self.speed(disc)).fold(0.0, f64::max);
         self.remaps += 1;
         self.operations.cell_updates += self.discs.len() as u64;
         self.operations.searches += self.discs.len() as u64;
@@ -248,35 +325,41 @@ impl<C: DiscCells> ReferenceEngine<C> {
             self.events[disc as usize] = self.at_wall(disc);
         }
         let (now, horizon, ahead) = (time, self.horizon(), self.slack / (2.0 * self.fastest));
-        let ReferenceEngine { grid, discs, events, arena, speeds, operations, .. } = self;
+        let mut events = std::mem::take(&mut self.events);
+        let mut predictions = 0;
+        let TournamentEngine { cells, discs, arena, .. } = &*self;
         // Visit each pair once, and only if it can meet before the horizon.
-        for disc in 0..discs.len() as u32 {
-            let (own, speed, here) =
-                (&discs[disc as usize], speeds[disc as usize], grid.position_at_fill(disc));
-            for other in grid.around(disc).filter(|&other| other > disc) {
-                let [dx, dy] = arena.domain.displacement(here, grid.position_at_fill(other));
-                let reach = own.radius + discs[other as usize].radius;
-                let near = (reach + (speed + speeds[other as usize]) * ahead) * ROUNDED_UP;
-                if dx * dx + dy * dy > near * near {
-                    continue;
+        for (number, own) in (0..).zip(discs) {
+            let (speed, here) = (self.speed(own), own.at(&arena.space, time));
+            cells.for_each_around(number, |other_number| {
+                if other_number <= number {
+                    return;
                 }
-                operations.predictions += 1;
-                let time = pair(&arena.space, discs, [disc, other], now, horizon);
-                for (one, with) in [(disc, other), (other, disc)] {
-                    let event = PredictedEvent { time, with: EventPartner::Disc(with) };
+                let other = &discs[other_number as usize];
+                let [dx, dy] = arena.domain.displacement(here, other.at(&arena.space, time));
+                let reach = own.radius + other.radius;
+                let near = (reach + (speed + self.speed(other)) * ahead) * ROUNDED_UP;
+                if dx * dx + dy * dy > near * near {
+                    return;
+                }
+                predictions += 1;
+                let time = pair(&arena.space, discs, [number, other_number], now, horizon);
+                for (one, with, disc) in [(number, other_number, other), (other_number, number, own)] {
+                    let event = PredictedEvent::with_disc(time, with, disc);
                     if event.is_before(&events[one as usize]) {
                         events[one as usize] = event;
                     }
                 }
-            }
+            });
         }
-        let events = &self.events;
-        self.tree.renew(events.len(), |disc| events[disc as usize].time);
+        self.events = events;
+        self.operations.predictions += predictions;
+        self.begin_tournament();
         Ok(())
     }
 }
 
-impl<C: DiscCells> FlyingDiscs for ReferenceEngine<C> {
+impl<C: DiscCells> FlyingDiscs for TournamentEngine<C> {
     fn count(&self) -> usize {
         self.discs.len()
     }
@@ -286,7 +369,7 @@ impl<C: DiscCells> FlyingDiscs for ReferenceEngine<C> {
     }
 }
 
-impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
+impl<C: DiscCells> EventEngine for TournamentEngine<C> {
     fn begin(&mut self) -> Result<(), EngineError> {
         self.remap(self.time)
     }
@@ -295,9 +378,11 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
         loop {
             let first = self.tree.first();
             let event = self.events[first as usize];
+            let crossing = self.cells.crossing_time(first);
+            let time = event.time.min(crossing);
             // ISO99 (6), with the largest speed kept up to date.
             let horizon = self.horizon();
-            if event.time > until.min(horizon) {
+            if time > until.min(horizon) || time == f64::INFINITY {
                 if until <= horizon || self.remaps >= most {
                     return Ok(false);
                 }
@@ -305,10 +390,21 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
                 self.remap(horizon.max(self.time))?;
                 continue;
             }
-            if event.time < self.time {
-                return Err(EngineError::BackInTime(first, event.time, self.time));
+            if time < self.time {
+                return Err(EngineError::BackInTime(first, time, self.time));
             }
-            self.time = event.time;
+            if crossing <= event.time && self.rebuilds() >= most {
+                return Ok(false);
+            }
+            self.time = time;
+            if crossing <= event.time {
+                self.cross(first);
+                continue;
+            }
+            if self.is_outdated(&event) {
+                self.repair(first);
+                continue;
+            }
             let executed = self.execute_event(first, event);
             if !observer(&executed, self) {
                 return Ok(true);
@@ -317,7 +413,7 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
     }
 
     fn rebuilds(&self) -> u64 {
-        self.remaps
+        self.remaps + self.crossings / self.discs.len().max(1) as u64
     }
 
     fn operations(&self) -> Operations {
@@ -327,14 +423,15 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
     fn snapshot(&self) -> Snapshot {
         let mut kept = Snapshot::default();
         for (axis, name) in FILLED_AT.into_iter().enumerate() {
-            let along = (0..self.discs.len() as u32).map(|disc| self.grid.position_at_fill(disc)[axis]);
+            let along = (0..self.discs.len() as u32).map(|disc| self.cells.centre(disc)[axis]);
             kept.add_column(name, CheckpointColumn::F64(along.collect()));
         }
-        let ReferenceEngine { time, slack, since, fastest, filled, remaps, .. } = *self;
+        let TournamentEngine { time, slack, since, fastest, filled, remaps, crossings, .. } = *self;
         for (name, value) in SUMS.into_iter().zip([time, slack, since, fastest, filled]) {
             kept.add_sum(name, value);
         }
         kept.add_count("engine.remaps", remaps);
+        kept.add_count("engine.crossings", crossings);
         kept
     }
 
@@ -342,19 +439,24 @@ impl<C: DiscCells> EventEngine for ReferenceEngine<C> {
         let count = discs.len();
         let filled_at = [kept.numbers(FILLED_AT[0], count)?, kept.numbers(FILLED_AT[1], count)?];
         let places = (0..count).map(|disc| filled_at.map(|along| along[disc]));
-        self.fill(places.collect()).map_err(|_| "two discs are in one cell")?;
+        self.cells.fill(places).map_err(|_| "two discs are in one cell")?;
         let [time, slack, since, fastest, filled] = SUMS.map(|name| kept.sum(name));
         (self.time, self.slack, self.since, self.fastest) = (time?, slack?, since?, fastest?);
         (self.filled, self.remaps) = (filled?, kept.count("engine.remaps")?);
+        // Checkpoints of the version 0.2.0 have no crossings.
+        self.crossings = kept.count("engine.crossings").unwrap_or(0);
         self.discs = discs;
         self.events = (0..count as u32).map(|disc| self.predicted_event(disc)).collect();
-        let events = &self.events;
-        self.tree.renew(events.len(), |disc| events[disc as usize].time);
+        self.begin_tournament();
         Ok(())
     }
 
     fn figures(&self) -> Vec<(&'static str, f64)> {
-        vec![("remaps", self.remaps as f64), self.grid.figure()]
+        let mut figures = vec![("remaps", self.remaps as f64), self.cells.figure()];
+        if self.crossings > 0 {
+            figures.push(("crossings", self.crossings as f64));
+        }
+        figures
     }
 }
 
