@@ -84,6 +84,11 @@ impl MeasuredCase {
         self.spread_of_readings(|it| it.counts.get(name).copied().unwrap_or(0.0) / it.work).median
     }
 
+    /// Peak memory of the process that measured the case (bytes). Cases measured together share it.
+    pub(crate) fn peak_memory(&self) -> f64 {
+        self.spread_of_readings(|it| it.peak_memory).median
+    }
+
     /// Ratio of the rate to that of another case, process by process.
     pub(crate) fn rate_ratio(&self, other: &MeasuredCase) -> ProcessSpread {
         let rate = |it: &CaseReading| it.work / it.seconds;

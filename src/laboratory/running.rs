@@ -51,23 +51,23 @@ impl RunningScene {
     /// Starts a preset with overrides, with all observables.
     pub(super) fn begin(preset: &str, overrides: &Overrides) -> Result<RunningScene, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
-        RunningScene::of(method, &prepared, StartPurpose::Run)
+        RunningScene::of(method, prepared, StartPurpose::Run)
     }
 
     /// Starts a preset with overrides for timing: only quantities that the motion needs are tracked.
     pub(crate) fn begin_timed(preset: &str, overrides: &Overrides) -> Result<RunningScene, StudyError> {
         let (prepared, method) = load(preset, &overrides.texts(), METHODS)?;
-        RunningScene::of(method, &prepared, StartPurpose::Measurement)
+        RunningScene::of(method, prepared, StartPurpose::Measurement)
     }
 
-    /// Starts a prepared scene of a method.
+    /// Starts a prepared scene of a method, whose particles at the start may be released.
     pub(super) fn of(
         method: &'static MethodEntry,
-        prepared: &Prepared,
+        mut prepared: Prepared,
         purpose: StartPurpose,
     ) -> Result<RunningScene, StudyError> {
         prepared.memory.fits("scene")?;
-        let (simulation, domain) = (prepared.start(purpose)?, prepared.domain);
+        let (simulation, domain) = (prepared.start_last(purpose)?, prepared.domain);
         Ok(RunningScene { simulation, domain, quantities: method.quantities })
     }
 

@@ -83,6 +83,17 @@ impl Particles {
         &mut self.0
     }
 
+    /// Visits all particles, the last one first, and releases the memory of those visited piece by piece.
+    pub(crate) fn release_each(self, mut visit: impl FnMut(Particle)) {
+        const PIECES: usize = 16;
+        let Particles(mut left) = self;
+        let piece = left.len().div_ceil(PIECES).max(1);
+        while !left.is_empty() {
+            left.drain(left.len().saturating_sub(piece)..).rev().for_each(&mut visit);
+            left.shrink_to_fit();
+        }
+    }
+
     /// Particles that forces move.
     pub fn grains(&self) -> &[Particle] {
         &self.0[..self.grain_count()]

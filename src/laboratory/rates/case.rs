@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
 use std::time::Instant;
+use stripmine_physics::memory;
 use stripmine_physics::method::{self, METHODS, StartPurpose, load};
 use stripmine_physics::scene::Overrides;
 
@@ -125,7 +126,7 @@ impl RateCase {
             }
             CaseTask::Scene { preset, overrides, in_events, amount, seconds } => on_threads(threads, || {
                 let (prepared, method) = load(preset, overrides, METHODS)?;
-                let mut running = RunningScene::of(method, &prepared, StartPurpose::Measurement)?;
+                let mut running = RunningScene::of(method, prepared, StartPurpose::Measurement)?;
                 let mut advance = |running: &mut RunningScene, amount: u64| match in_events {
                     true => running.advance_events(amount),
                     false => running.advance_steps(amount),
@@ -177,6 +178,7 @@ fn time_scene(
         seconds,
         parts: running.simulation.phases().into_iter().map(owned).collect(),
         counts: after.map(|((name, after), (_, before))| owned((name, (after - before) as f64))).collect(),
+        peak_memory: memory::peak().map_or(0.0, |bytes| bytes as f64),
     })
 }
 
@@ -191,6 +193,9 @@ pub(crate) struct CaseReading {
     pub parts: BTreeMap<String, f64>,
     /// Counted operations, by name.
     pub counts: BTreeMap<String, f64>,
+    /// Peak memory of the process so far (bytes), for scenes; 0 if the system does not report it.
+    #[serde(default)]
+    pub peak_memory: f64,
 }
 
 #[cfg(test)]

@@ -69,6 +69,7 @@ fn measure_cells(&(kind, discs, packing): &(usize, u64, f64)) -> Result<CaseRead
         counts: BTreeMap::from(
             [("bytes", cells.bytes() as f64 / count), ("neighbours", found[0] as f64 / count)].map(named),
         ),
+        ..CaseReading::default()
     })
 }
 

@@ -12,6 +12,9 @@ use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 pub(super) const ENGINES: [&str; 2] = ["fast", "reference"];
 /// Packing fractions.
 const PACKING_FRACTIONS: [f64; 5] = [0.10, 0.30, 0.50, 0.65, 0.70];
+/// Packing fraction of the largest system, and the memory that ISO99 needs for it (bytes).
+const LARGEST_FRACTION: f64 = 0.70;
+const SOURCE_MEMORY: f64 = 250e6;
 /// ISO99: number of discs, and million collisions per hour at the best density.
 const SOURCE: [(f64, f64); 2] = [(2500.0, 460.0), (2_500_000.0, 210.0)];
 
@@ -23,9 +26,10 @@ pub(super) fn fluid_overrides(engine: &str, discs: u64, packing_fraction: f64) -
 
 /// Measures both engines.
 pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<FinishedItem, CommandFailure> {
-    let (sizes, collisions): (&[u64], _) = match size {
-        StudySize::Quick => (&[2500], 50_000),
-        StudySize::Full | StudySize::All => (&[2500, 250_000], 100_000),
+    let (sizes, collisions, largest): (&[u64], _, u64) = match size {
+        StudySize::Quick => (&[2500], 50_000, 2500),
+        StudySize::Full => (&[2500, 250_000], 100_000, 250_000),
+        StudySize::All => (&[2500, 250_000], 100_000, 2_500_000),
     };
     let scenes = sizes.iter().flat_map(|&discs| PACKING_FRACTIONS.map(|packing| (discs, packing)));
     let scenes: Vec<(u64, f64)> = scenes.collect();
@@ -49,7 +53,14 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     let facts = facts.collect::<Result<Vec<_>, CommandFailure>>()?;
     let pairs = measured.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]);
     let source = |discs: f64| SOURCE.into_iter().find(|(known, _)| (discs / known - 1.0).abs() < 0.1);
-    Ok(FinishedItem::of([FrameBuilder::of(scenes.iter().zip(pairs).zip(&facts))
+    let largest = ENGINES.into_iter().map(|engine| {
+        let scene = fluid_overrides(engine, largest, LARGEST_FRACTION);
+        let case = RateCase::events("hard-disks", &scene, largest, 10 * collisions);
+        // Measured alone: the peak of the memory is that of the process.
+        Ok((engine, measure_rates(lab, &[case.label("engine", engine).label("discs", largest)])?))
+    });
+    let largest = largest.collect::<Result<Vec<_>, CommandFailure>>()?;
+    let rates = FrameBuilder::of(scenes.iter().zip(pairs).zip(&facts))
         .number("discs", 0, |(_, [fast, _])| fast.0)
         .number("ν", 2, |(((_, packing), _), _)| *packing)
         .cell("fast (million/s)", |((_, [fast, _]), _)| fast.rate().cell(1e-6, 3))
@@ -61,6 +72,14 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         })
         .number("memory, fast (MB)", 0, |(_, [fast, _])| 1e-6 * fast.1)
         .number("memory, the source's way (MB)", 0, |(_, [_, reference])| 1e-6 * reference.1)
-        .frame("rates", "Million collisions a second of processor time")])
-    .with_seeds([1]))
+        .frame("rates", "Million collisions a second of processor time");
+    let largest =
+        FrameBuilder::of(largest.iter().flat_map(|(engine, all)| all.iter().map(move |it| (engine, it))))
+            .text("engine", |(engine, _)| **engine)
+            .cell("rate (million/s)", |(_, it)| it.rate().cell(1e-6, 3))
+            .number("million collisions an hour", 0, |(_, it)| 3600e-6 * it.rate().median)
+            .number("peak memory (MB)", 0, |(_, it)| 1e-6 * it.peak_memory())
+            .number("over the source's memory", 2, |(_, it)| it.peak_memory() / SOURCE_MEMORY)
+            .frame("largest", "Rate and peak memory with the most discs, packing fraction 0.7");
+    Ok(FinishedItem::of([rates, largest]).with_seeds([1]))
 }

@@ -129,7 +129,7 @@ fn structure(&packing_fraction: &f64) -> Result<Structure, StudyError> {
         let angle = TAU * (f64::from(turn) * 0.618_033_988_749_895).fract();
         disc.velocity = [2f64.sqrt() * angle.cos(), 2f64.sqrt() * angle.sin(), 0.0];
     }
-    let mut running = RunningScene::of(method, &scene.model.started_from(start), StartPurpose::Run)?;
+    let mut running = RunningScene::of(method, scene.model.started_from(start), StartPurpose::Run)?;
     let count = running.simulation.particles().grain_count();
     let maxwell = |running: &RunningScene| {
         Ok::<_, StudyError>(running.maxwell_probability(running.observed_values(["temperature"])?[0]))

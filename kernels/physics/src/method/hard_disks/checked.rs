@@ -177,19 +177,37 @@ impl StartingDiscs {
     /// Discs at the start.
     fn of(arena: &Arena, particles: &Particles) -> StartingDiscs {
         let identities = DiscIdentities::of(particles);
-        let disc = |number: u32| {
-            let own = &particles.all()[identities.place(number)];
-            FlyingDisc {
-                position: arena.domain.wrapped(own.planar_position()),
-                velocity: own.planar_velocity(),
-                time: 0.0,
-                radius: own.radius,
-                mass: own.mass,
-                events: 0,
-            }
-        };
+        let disc = |number: u32| starting_disc(arena, &particles.all()[identities.place(number)]);
         let discs = (0..identities.count() as u32).map(disc).collect();
         StartingDiscs { discs, identities, energy: available_energy(arena, particles) }
+    }
+
+    /// Discs at the start, whose particles are released piece by piece, unless a copy of the scene shares them.
+    fn released(arena: &Arena, particles: Arc<Particles>) -> StartingDiscs {
+        let identities = DiscIdentities::of(&particles);
+        let energy = available_energy(arena, &particles);
+        match Arc::try_unwrap(particles) {
+            Ok(particles) if identities.are_in_order() => {
+                let mut discs = Vec::with_capacity(particles.len());
+                particles.release_each(|own| discs.push(starting_disc(arena, &own)));
+                discs.reverse();
+                StartingDiscs { discs, identities, energy }
+            }
+            Ok(particles) => StartingDiscs::of(arena, &particles),
+            Err(shared) => StartingDiscs::of(arena, &shared),
+        }
+    }
+}
+
+/// Disc at its position inside the box, without events.
+fn starting_disc(arena: &Arena, own: &Particle) -> FlyingDisc {
+    FlyingDisc {
+        position: arena.domain.wrapped(own.planar_position()),
+        velocity: own.planar_velocity(),
+        time: 0.0,
+        radius: own.radius,
+        mass: own.mass,
+        events: 0,
     }
 }
 
@@ -307,6 +325,12 @@ impl CheckedHardDisks {
     /// Discs at the start.
     pub(super) fn discs(&self) -> StartingDiscs {
         StartingDiscs::of(&self.scene.arena(self.domain), &self.particles)
+    }
+
+    /// Discs at the start, which the scene gives up.
+    pub(super) fn released_discs(&mut self) -> StartingDiscs {
+        let particles = std::mem::take(&mut self.particles);
+        StartingDiscs::released(&self.scene.arena(self.domain), particles)
     }
 
     pub(super) fn packing_fraction(&self) -> f64 {

@@ -42,6 +42,11 @@ impl DiscIdentities {
         identities
     }
 
+    /// True if the scene lists the discs in the order of their ids.
+    pub(super) fn are_in_order(&self) -> bool {
+        self.places.is_empty()
+    }
+
     /// Number of discs.
     pub(super) fn count(&self) -> usize {
         self.count

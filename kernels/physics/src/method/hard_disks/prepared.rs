@@ -190,9 +190,8 @@ impl Startable for CheckedHardDisks {
     }
 
     fn start_last(&mut self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {
-        let discs = self.discs();
         // Before the engine takes its memory.
-        self.particles = Arc::default();
+        let discs = self.released_discs();
         self.start_with(discs, purpose)
     }
 

@@ -3,9 +3,9 @@
 /// Tournament tree. Leaves are discs, by number.
 #[derive(Clone, Debug)]
 pub(crate) struct TournamentTree {
-    /// Winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves are not stored.
+    /// Winner of each node; the root is 1, the children of k are 2k and 2k + 1. Leaves, from the number of discs on, are not stored.
     winners: Vec<u32>,
-    /// Number of leaves, a power of two.
+    /// Number of leaves.
     leaves: usize,
 }
 
@@ -15,7 +15,7 @@ const NONE: u32 = u32::MAX;
 impl TournamentTree {
     /// Builds the tree of `count` discs with the keys `time`; ties go to the smaller number.
     pub(super) fn new(count: usize, time: impl Fn(u32) -> f64) -> TournamentTree {
-        let leaves = count.next_power_of_two().max(2);
+        let leaves = count.max(2);
         let mut tree = TournamentTree { winners: vec![NONE; leaves], leaves };
         for node in (1..leaves).rev() {
             tree.winners[node] = tree.play(node, count, &time);
@@ -65,8 +65,10 @@ impl TournamentTree {
         match (left, right) {
             (left, NONE) => left,
             (NONE, right) => right,
-            (left, right) if time(right) < time(left) => right,
-            (left, _) => left,
+            (left, right) => {
+                let [ours, theirs] = [time(left), time(right)];
+                if theirs < ours || theirs == ours && right < left { right } else { left }
+            }
         }
     }
 }
