@@ -85,6 +85,18 @@ pub(crate) fn slope(x: &[f64], y: &[f64]) -> f64 {
     if spread > 0.0 { rise / spread } else { 0.0 }
 }
 
+/// Half-width of the 95 % interval of the [`slope`] of at least three points, from their scatter about the line; 0 for fewer.
+pub(crate) fn slope_error(x: &[f64], y: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (middle, height, slope) = (mean(x), mean(y), slope(x, y));
+    let rest = x.iter().zip(y).map(|(x, y)| (y - height - slope * (x - middle)).powi(2)).sum::<f64>();
+    let spread = x.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>();
+    match x.len() {
+        0..3 => 0.0,
+        count => student(0.95, count - 2) * (rest / (count - 2) as f64 / spread).sqrt(),
+    }
+}
+
 /// Non-negative `x` that minimises `|A x - b|`, by coordinate descent on the normal equations; rows are (features, value).
 pub(crate) fn non_negative<const N: usize>(rows: &[([f64; N], f64)]) -> [f64; N] {
     let mut square = [[0.0; N]; N];
@@ -187,6 +199,15 @@ mod tests {
                 assert!((end - published).abs() < 5.1e-5, "{came_true} of {trials}: {end}");
             }
         }
+    }
+
+    /// By hand: (0, 0), (1, 2), (2, 1) has a slope of ½, residuals of −½, 1 and −½, and so an error of √(3/2 / 2).
+    #[test]
+    fn slopes_have_the_error_of_their_residuals() {
+        let (x, y) = ([0.0, 1.0, 2.0], [0.0, 2.0, 1.0]);
+        assert_eq!(slope(&x, &y), 0.5);
+        assert!((slope_error(&x, &y) / student(0.95, 1) - 0.75_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(slope_error(&x[..2], &y[..2]), 0.0);
     }
 
     #[test]

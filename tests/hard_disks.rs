@@ -356,6 +356,19 @@ fn impossible_hard_disc_scenes_are_refused() {
         &["too small for lists"],
     );
     refused("hard-disks", &["particles.count=20", "search.mask=r10"], 3, &["r10 does not serve", "one of"]);
+    refused(
+        "hot-floor",
+        &["machine.engine=cell-crossing"],
+        3,
+        &["cells for the whole box", "open_top", "or \"auto\""],
+    );
+    refused(
+        "hard-disks",
+        &["particles.count=4", "particles.packing_fraction=0.7", "machine.engine=cell-crossing"],
+        3,
+        &["too small for linked cells", "a larger box"],
+    );
+    refused("hard-disks", &["search.discs_in_cell=2"], 3, &["search.discs_in_cell", "machine.engine"]);
     refused("hard-disks", &["particles.temperature=0"], 3, &["nothing will ever happen"]);
     let list = |positions: &str| {
         let scene = folder.path().join("list.toml");

@@ -51,6 +51,16 @@ impl MachineDescription {
 }
 
 impl MachineDescription {
+    /// Names and sizes (bytes) of the data caches.
+    pub(crate) fn data_caches(&self) -> Vec<(String, f64)> {
+        let cache = |text: &String| {
+            let (name, size) = text.split_once(' ')?;
+            let kibibytes: f64 = size.strip_suffix('K')?.parse().ok()?;
+            Some((name.to_owned(), 1024.0 * kibibytes))
+        };
+        self.caches.iter().filter_map(cache).filter(|(name, _)| !name.ends_with('i')).collect()
+    }
+
     /// Copy without the clock, which fluctuates on some machines.
     pub(crate) fn without_clock(&self) -> MachineDescription {
         MachineDescription { clock: None, ..self.clone() }

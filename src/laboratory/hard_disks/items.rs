@@ -1,8 +1,8 @@
 //! Items of hard discs: each is a study with a page in the folder `pages`.
 
 use super::study::{
-    atmosphere, cells, collapse, complexity, cooling, crossing, fluid, lifetimes, masks, precision, rates,
-    soft_hard, structure,
+    atmosphere, cells, collapse, complexity, cooling, crossing, errors, fluid, lifetimes, masks, precision,
+    rates, soft_hard, structure,
 };
 use crate::results::Item;
 
@@ -20,5 +20,6 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-collapse", collapse::reproduce),
     Item::of("hard-disks-precision", precision::reproduce),
     Item::of("hard-disks-atmosphere", atmosphere::reproduce),
+    Item::of("hard-disks-errors", errors::reproduce),
     Item::of("soft-hard", soft_hard::reproduce),
 ];

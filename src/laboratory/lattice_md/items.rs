@@ -2,7 +2,7 @@
 
 use super::study::{
     corrector, damping, density_cost, efficiency_table, identity, ladder, listing, mask, misprints,
-    model_validation, pipe_flow, precision, printed, searches, useful_work,
+    model_validation, pipe_flow, precision, printed, scaling, searches, useful_work, wave_spectra,
 };
 use crate::results::Item;
 
@@ -17,6 +17,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("cost", density_cost::reproduce),
     Item::of("useful-work", useful_work::reproduce),
     Item::of("printed", printed::reproduce),
+    Item::of("scaling", scaling::reproduce),
     Item::of("searches", searches::reproduce),
     Item::of("validation", model_validation::reproduce),
     Item::of("identity", identity::reproduce),
@@ -25,4 +26,5 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("pipe", pipe_flow::whole_pipe),
     Item::of("pipe-thin", pipe_flow::thin_pipe),
     Item::of("waves", damping::reproduce),
+    Item::of("wave-spectra", wave_spectra::reproduce),
 ];

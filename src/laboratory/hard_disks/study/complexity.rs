@@ -128,7 +128,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     Ok(FinishedItem::of([
         rows.number("by the fit (µs)", 3, |it| 1e6 * fit(it))
             .frame("complexity", "Of a collision: processor time and counted operations"),
-        FrameBuilder::of(data_caches())
+        FrameBuilder::of(MachineDescription::here().data_caches())
             .text("cache", |(name, _)| name.clone())
             .number("bytes", 0, |(_, bytes)| *bytes)
             .number("discs", 0, |(_, size)| size / bytes)
@@ -142,21 +142,6 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
             ),
     ])
     .with_seeds([1]))
-}
-
-/// Names and sizes in bytes of this machine's data caches.
-fn data_caches() -> Vec<(String, f64)> {
-    let cache = |text: &String| {
-        let (name, size) = text.split_once(' ')?;
-        let kibibytes: f64 = size.strip_suffix('K')?.parse().ok()?;
-        Some((name.to_owned(), 1024.0 * kibibytes))
-    };
-    MachineDescription::here()
-        .caches
-        .iter()
-        .filter_map(cache)
-        .filter(|(name, _)| !name.ends_with('i'))
-        .collect()
 }
 
 #[cfg(test)]

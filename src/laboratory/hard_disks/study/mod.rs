@@ -6,6 +6,7 @@ pub(crate) mod collapse;
 pub(crate) mod complexity;
 pub(crate) mod cooling;
 pub(crate) mod crossing;
+pub(crate) mod errors;
 pub(crate) mod fluid;
 pub(crate) mod lifetimes;
 pub(crate) mod masks;

@@ -16,7 +16,9 @@ pub(super) mod pipe_flow;
 pub(super) mod precision;
 pub(super) mod printed;
 mod samples;
+pub(super) mod scaling;
 pub(super) mod searches;
 pub(super) mod useful_work;
+pub(super) mod wave_spectra;
 
 use crate::study::StudyError;

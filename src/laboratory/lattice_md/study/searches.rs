@@ -21,8 +21,8 @@ const PRECISIONS: [&str; 3] = [F64, "mixed", "f32"];
 /// Optimised searches by their names in scenes; the lattice is first.
 const TODAY: [&str; 3] = ["lattice", "neighbor-list", "sectors"];
 const EAGER: &str = "printed lattice, eager";
-const CHAINED: &str = "lattice, chained";
-const ALL_PAIRS: &str = "printed lists of all pairs";
+pub(super) const CHAINED: &str = "lattice, chained";
+pub(super) const ALL_PAIRS: &str = "printed lists of all pairs";
 /// Methods of 1993, and the lattice's programs as compiled loops (`CHAINED`).
 const PAPER: [&str; 3] = [EAGER, CHAINED, ALL_PAIRS];
 
@@ -45,7 +45,7 @@ struct SearchGrid {
 
 const MIDDLE: usize = 1000;
 /// Highest occupancy for the methods of 1993, on cells as wide as the radius.
-const DENSE: f64 = 0.25;
+pub(super) const DENSE: f64 = 0.25;
 
 const QUICK: SearchGrid = SearchGrid {
     discs: &[3000],
@@ -69,22 +69,23 @@ const FULL: SearchGrid = SearchGrid {
 
 /// Case of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct SearchCase {
-    search: &'static str,
+pub(super) struct SearchCase {
+    pub(super) search: &'static str,
     precision: &'static str,
     /// Number of threads if wall time is measured; otherwise processor time is measured.
     threads: Option<usize>,
     /// Requested number of discs.
-    discs: usize,
+    pub(super) discs: usize,
     packing_fraction: f64,
 }
 
 impl SearchCase {
-    fn of(search: &'static str, discs: usize, packing_fraction: f64) -> SearchCase {
+    /// Case in double precision, whose processor time is measured.
+    pub(super) fn of(search: &'static str, discs: usize, packing_fraction: f64) -> SearchCase {
         SearchCase { search, precision: F64, threads: None, discs, packing_fraction }
     }
 
-    fn scene(self) -> Overrides {
+    pub(super) fn scene(self) -> Overrides {
         let scene = Overrides::new().set(&COUNT, self.discs).set(&PACKING_FRACTION, self.packing_fraction);
         let scene = scene.set(&PRECISION, self.precision);
         // The paper has no clamp, and cells as wide as the radius.
@@ -113,7 +114,8 @@ impl SearchCase {
         }
     }
 
-    fn case(self, seconds: f64) -> RateCase {
+    /// Measured case, of at least some seconds.
+    pub(super) fn case(self, seconds: f64) -> RateCase {
         let [warm_up, steps] = self.steps();
         // Occupancy as requested.
         let occupancy = (1e6 * self.packing_fraction / PI).round() / 1e6;

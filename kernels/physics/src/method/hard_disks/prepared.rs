@@ -11,7 +11,7 @@ use crate::method::entry::left_out;
 use crate::method::reject_several_ranks;
 use crate::method::{Fact, PhysicsFailure, Prepared, Simulation, StartPurpose, Startable};
 use crate::number::significant;
-use crate::particles::{Particle, ParticleKind, Particles};
+use crate::particles::{ParticleKind, Particles};
 use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
@@ -141,10 +141,10 @@ impl CheckedHardDisks {
             true => (size_of::<FlyingDisc>() + 2 * size_of::<f64>()) as f64,
             false => 0.0,
         };
-        // A resumed run takes most: a copy of the disc, the checkpoint as bytes and as columns, and the search for overlaps (measured). Two frames
-        // and their text take 283 bytes a disc.
-        let resumption = 305.0;
-        let disc = size_of::<Particle>() as f64 + resumption + followed;
+        // A resumed run takes most: a copy of the disc, the checkpoint as bytes and as columns, and the search for overlaps (measured). The
+        // particles at the start are released before.
+        let resumption = 236.0;
+        let disc = resumption + followed;
         MemoryForecast {
             needed: (PROGRAM + disc * discs + of_engine) as u64,
             available: available(),
