@@ -53,13 +53,13 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     let facts = facts.collect::<Result<Vec<_>, CommandFailure>>()?;
     let pairs = measured.chunks_exact(ENGINES.len()).map(|pair| [&pair[0], &pair[1]]);
     let source = |discs: f64| SOURCE.into_iter().find(|(known, _)| (discs / known - 1.0).abs() < 0.1);
-    let largest = ENGINES.into_iter().map(|engine| {
+    let largest_runs = ENGINES.into_iter().map(|engine| {
         let scene = fluid_overrides(engine, largest, LARGEST_FRACTION);
         let case = RateCase::events("hard-disks", &scene, largest, 10 * collisions);
         // Measured alone: the peak of the memory is that of the process.
         Ok((engine, measure_rates(lab, &[case.label("engine", engine).label("discs", largest)])?))
     });
-    let largest = largest.collect::<Result<Vec<_>, CommandFailure>>()?;
+    let largest_runs = largest_runs.collect::<Result<Vec<_>, CommandFailure>>()?;
     let rates = FrameBuilder::of(scenes.iter().zip(pairs).zip(&facts))
         .number("discs", 0, |(_, [fast, _])| fast.0)
         .number("ν", 2, |(((_, packing), _), _)| *packing)
@@ -73,13 +73,15 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         .number("memory, fast (MB)", 0, |(_, [fast, _])| 1e-6 * fast.1)
         .number("memory, the source's way (MB)", 0, |(_, [_, reference])| 1e-6 * reference.1)
         .frame("rates", "Million collisions a second of processor time");
-    let largest =
-        FrameBuilder::of(largest.iter().flat_map(|(engine, all)| all.iter().map(move |it| (engine, it))))
-            .text("engine", |(engine, _)| **engine)
-            .cell("rate (million/s)", |(_, it)| it.rate().cell(1e-6, 3))
-            .number("million collisions an hour", 0, |(_, it)| 3600e-6 * it.rate().median)
-            .number("peak memory (MB)", 0, |(_, it)| 1e-6 * it.peak_memory())
-            .number("over the source's memory", 2, |(_, it)| it.peak_memory() / SOURCE_MEMORY)
-            .frame("largest", "Rate and peak memory with the most discs, packing fraction 0.7");
+    let largest = FrameBuilder::of(
+        largest_runs.iter().flat_map(|(engine, all)| all.iter().map(move |it| (engine, it))),
+    )
+    .text("engine", |(engine, _)| **engine)
+    .count("discs", |_| largest)
+    .cell("rate (million/s)", |(_, it)| it.rate().cell(1e-6, 3))
+    .number("million collisions an hour", 0, |(_, it)| 3600e-6 * it.rate().median)
+    .number("peak memory (MB)", 0, |(_, it)| 1e-6 * it.peak_memory())
+    .number("over the source's memory", 2, |(_, it)| it.peak_memory() / SOURCE_MEMORY)
+    .frame("largest", "Rate and peak memory with the most discs, packing fraction 0.7");
     Ok(FinishedItem::of([rates, largest]).with_seeds([1]))
 }
