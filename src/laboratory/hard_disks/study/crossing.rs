@@ -195,12 +195,14 @@ fn frames(few: &[SearchCost], many: &[SearchCost], packings: &[f64]) -> [ResultF
     ]
 }
 
-/// N_g/N_c at which the cost ratio (operations or time) is 1, by a power law fitted to all comparisons.
-fn equal_cost(pairs: &[Comparison<'_>], which: usize) -> f64 {
+/// N_g/N_c at which the cost ratio (operations or time) is 1, by a power law fitted to all comparisons; none outside the compared values.
+fn equal_cost(pairs: &[Comparison<'_>], which: usize) -> Option<f64> {
     let x: Vec<f64> = pairs.iter().map(|it| it.discs_ratio().ln()).collect();
     let y: Vec<f64> = pairs.iter().map(|it| it.cost_ratios()[which].ln()).collect();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    (mean(&x) - mean(&y) / slope(&x, &y)).exp()
+    let equal = mean(&x) - mean(&y) / slope(&x, &y);
+    let [least, most] = [f64::min, f64::max].map(|of| x.iter().copied().reduce(of).unwrap_or(f64::NAN));
+    (least..=most).contains(&equal).then(|| equal.exp())
 }
 
 #[cfg(test)]
@@ -220,7 +222,9 @@ mod tests {
         let pairs: Vec<Comparison<'_>> =
             masks.iter().flat_map(|mask| cells.iter().map(move |cell| Comparison { mask, cell })).collect();
         for which in 0..2 {
-            assert!((equal_cost(&pairs, which) - 4.5).abs() < 1e-9);
+            assert!((equal_cost(&pairs, which).unwrap() - 4.5).abs() < 1e-9);
+            // Of a single pair nothing follows.
+            assert_eq!(equal_cost(&pairs[..1], which), None);
         }
     }
 }
