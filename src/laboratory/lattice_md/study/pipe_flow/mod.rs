@@ -22,7 +22,7 @@ const STRIDE: f64 = 0.05;
 /// Bin width for the Fano factor, in mean radii.
 const FANO_BIN: f64 = 20.0;
 /// Bin width of the density map, in mean radii.
-pub(super) const MAP_BIN: f64 = 5.0;
+const MAP_BIN: f64 = 5.0;
 /// Shortest wavelength of waves, in mean radii.
 const SHORTEST_WAVE: f64 = 80.0;
 /// Steps of the control: 2 s.
@@ -63,7 +63,7 @@ pub(super) struct Flow {
     /// Length of the pipe (m).
     length: f64,
     /// Times of the samples, beginning with the start (s).
-    pub(super) times: Vec<f64>,
+    times: Vec<f64>,
     /// Variance over mean of the grains in bins of [`FANO_BIN`] radii, at each sample.
     pub fano: Vec<f64>,
     /// Strongest Fourier amplitude at wavelengths of at least [`SHORTEST_WAVE`] radii, at each sample.
@@ -71,9 +71,9 @@ pub(super) struct Flow {
     /// Mean velocity along the pipe at each sample (m/s).
     pub flow: Vec<f64>,
     /// Grains in bins of [`MAP_BIN`] radii, at each sample.
-    pub(super) density: Vec<Vec<u32>>,
+    density: Vec<Vec<u32>>,
     /// Spectral power by direction in the last half of the run; forth is the direction of gravity.
-    pub(super) directions: Directions,
+    directions: Directions,
     /// Largest penetration that exceeds the scene's `max_penetration` (fraction of the sum of the radii).
     deepest: f64,
     /// CRC-32 of the final state, by id.
