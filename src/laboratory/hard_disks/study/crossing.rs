@@ -45,12 +45,12 @@ impl SearchCost {
 }
 
 /// A mask and a linked cell at one packing fraction.
-struct Comparison<'c> {
+struct SearchComparison<'c> {
     mask: &'c SearchCost,
     cell: &'c SearchCost,
 }
 
-impl Comparison<'_> {
+impl SearchComparison<'_> {
     /// N_g/N_c.
     fn discs_ratio(&self) -> f64 {
         self.mask.seen / self.cell.seen
@@ -148,10 +148,10 @@ fn frames(few: &[SearchCost], many: &[SearchCost], packings: &[f64]) -> [ResultF
         few.iter().filter(move |it| it.engine == engine && it.packing_fraction == nu)
     };
     let at = |nu: f64| {
-        let pair = move |mask| of_engine(1, nu).map(move |cell| Comparison { mask, cell });
+        let pair = move |mask| of_engine(1, nu).map(move |cell| SearchComparison { mask, cell });
         of_engine(0, nu).flat_map(pair).collect::<Vec<_>>()
     };
-    let pairs: Vec<Comparison<'_>> = packings.iter().flat_map(|&nu| at(nu)).collect();
+    let pairs: Vec<SearchComparison<'_>> = packings.iter().flat_map(|&nu| at(nu)).collect();
     let of_many = |nu: f64| [0, 1].map(|engine| best(many, nu, engine));
     let costs = FrameBuilder::of(all())
         .number("ν", 2, |it| it.packing_fraction)
@@ -196,7 +196,7 @@ fn frames(few: &[SearchCost], many: &[SearchCost], packings: &[f64]) -> [ResultF
 }
 
 /// N_g/N_c at which the cost ratio (operations or time) is 1, by a power law fitted to all comparisons; none outside the compared values.
-fn equal_cost(pairs: &[Comparison<'_>], which: usize) -> Option<f64> {
+fn equal_cost(pairs: &[SearchComparison<'_>], which: usize) -> Option<f64> {
     let x: Vec<f64> = pairs.iter().map(|it| it.discs_ratio().ln()).collect();
     let y: Vec<f64> = pairs.iter().map(|it| it.cost_ratios()[which].ln()).collect();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
@@ -211,7 +211,7 @@ mod tests {
 
     /// Costs of 9 N_c and 2 N_g predictions are equal at N_g/N_c = 4.5, the paper's rough estimate.
     #[test]
-    fn costs_by_the_formula_are_equal_at_the_estimate() {
+    fn costs_by_the_formula_are_equal_there() {
         let cost = |engine: usize, seen: f64| {
             let predictions = if engine == 0 { 2.0 * seen } else { 9.0 * seen };
             let seconds = ProcessSpread { median: 3e-9 * predictions, range: [0.0; 2] };
@@ -219,8 +219,10 @@ mod tests {
             SearchCost { packing_fraction: 0.5, engine, setting: "", discs: 0.0, seen, operations, seconds }
         };
         let (masks, cells) = ([8.0, 13.0, 40.0].map(|it| cost(0, it)), [1.0, 2.0, 5.0].map(|it| cost(1, it)));
-        let pairs: Vec<Comparison<'_>> =
-            masks.iter().flat_map(|mask| cells.iter().map(move |cell| Comparison { mask, cell })).collect();
+        let pairs: Vec<SearchComparison<'_>> = masks
+            .iter()
+            .flat_map(|mask| cells.iter().map(move |cell| SearchComparison { mask, cell }))
+            .collect();
         for which in 0..2 {
             assert!((equal_cost(&pairs, which).unwrap() - 4.5).abs() < 1e-9);
             // Of a single pair nothing follows.

@@ -20,7 +20,7 @@ const DISCS: u64 = 2500;
 const DISSIPATIVE: f64 = 0.9;
 
 /// A part of a run.
-struct Window {
+struct LifetimeWindow {
     /// Time at the end, and collisions of a disc until then.
     time: f64,
     passed: f64,
@@ -30,7 +30,7 @@ struct Window {
     fills: f64,
 }
 
-impl Window {
+impl LifetimeWindow {
     fn lifetime(&self) -> f64 {
         self.duration / self.fills
     }
@@ -43,15 +43,18 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
     Ok(FinishedItem::of(frames(&all)).with_seeds([1]))
 }
 
-fn frames(all: &[Vec<Window>]) -> [ResultFrame; 2] {
+fn frames(all: &[Vec<LifetimeWindow>]) -> [ResultFrame; 2] {
     let named = || SCENES.iter().map(|(name, ..)| *name).zip(all);
     let windows = named().flat_map(|(name, windows)| windows.iter().map(move |it| (name, windows, it)));
-    let sum = |windows: &[Window], of: fn(&Window) -> f64| windows.iter().map(of).sum::<f64>();
+    let sum =
+        |windows: &[LifetimeWindow], of: fn(&LifetimeWindow) -> f64| windows.iter().map(of).sum::<f64>();
     // A fixed time is that of the first window.
-    let fixed = |windows: &[Window]| sum(windows, |it| it.duration) / windows[0].lifetime();
-    let shortest = |windows: &[Window]| windows.iter().map(Window::lifetime).fold(f64::INFINITY, f64::min);
-    let spread = |windows: &[Window]| {
-        let mean = sum(windows, Window::lifetime) / windows.len() as f64;
+    let fixed = |windows: &[LifetimeWindow]| sum(windows, |it| it.duration) / windows[0].lifetime();
+    let shortest = |windows: &[LifetimeWindow]| {
+        windows.iter().map(LifetimeWindow::lifetime).fold(f64::INFINITY, f64::min)
+    };
+    let spread = |windows: &[LifetimeWindow]| {
+        let mean = sum(windows, LifetimeWindow::lifetime) / windows.len() as f64;
         let square: f64 = windows.iter().map(|it| (it.lifetime() / mean - 1.0).powi(2)).sum();
         (square / (windows.len() as f64 - 1.0)).sqrt()
     };
@@ -78,7 +81,7 @@ fn frames(all: &[Vec<Window>]) -> [ResultFrame; 2] {
     ]
 }
 
-fn windows(&(name, preset, collisions): &(&str, &str, u64)) -> Result<Vec<Window>, StudyError> {
+fn windows(&(name, preset, collisions): &(&str, &str, u64)) -> Result<Vec<LifetimeWindow>, StudyError> {
     let scene = Overrides::new().set(&ENGINE, EngineChoice::Reference).set(&MASK, "min");
     let scene = match name {
         "hot floor" => scene,
@@ -98,7 +101,7 @@ fn windows(&(name, preset, collisions): &(&str, &str, u64)) -> Result<Vec<Window
     for window in 1..=WINDOWS {
         running.advance_events(collisions * discs)?;
         let after = state(&running)?;
-        found.push(Window {
+        found.push(LifetimeWindow {
             time: after[0],
             passed: (2 * collisions) as f64 * window as f64,
             duration: after[0] - before[0],
@@ -118,8 +121,8 @@ mod tests {
     /// By hand: a gas whose grid holds for 1, 2 and 4 units of time, two fills each, needs 6 fills in 14 units, and 14 with the first lifetime
     /// throughout.
     #[test]
-    fn a_fixed_lifetime_needs_more_fills_in_a_slowing_gas() {
-        let window = |lifetime: f64, fills: f64| Window {
+    fn slowing_gas_needs_fewer_fills() {
+        let window = |lifetime: f64, fills: f64| LifetimeWindow {
             time: 0.0,
             passed: 0.0,
             duration: lifetime * fills,

@@ -12,9 +12,8 @@ use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION};
 pub(super) const ENGINES: [&str; 2] = ["fast", "reference"];
 /// Packing fractions.
 const PACKING_FRACTIONS: [f64; 5] = [0.10, 0.30, 0.50, 0.65, 0.70];
-/// Packing fraction of the largest system, and the memory that ISO99 needs for it (bytes).
+/// Packing fraction of the largest system.
 const LARGEST_FRACTION: f64 = 0.70;
-const SOURCE_MEMORY: f64 = 250e6;
 /// ISO99: number of discs, and million collisions per hour at the best density.
 const SOURCE: [(f64, f64); 2] = [(2500.0, 460.0), (2_500_000.0, 210.0)];
 
@@ -81,7 +80,6 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     .cell("rate (million/s)", |(_, it)| it.rate().cell(1e-6, 3))
     .number("million collisions an hour", 0, |(_, it)| 3600e-6 * it.rate().median)
     .number("peak memory (MB)", 0, |(_, it)| 1e-6 * it.peak_memory())
-    .number("over the source's memory", 2, |(_, it)| it.peak_memory() / SOURCE_MEMORY)
     .frame("largest", "Rate and peak memory with the most discs, packing fraction 0.7");
     Ok(FinishedItem::of([rates, largest]).with_seeds([1]))
 }

@@ -1,6 +1,7 @@
 //! Checks a scene of hard discs against the preconditions of the method.
 
 use super::compress::compress;
+use super::configuration::EngineConfiguration;
 use super::event::Arena;
 use super::fast;
 use super::identities::DiscIdentities;
@@ -13,7 +14,6 @@ use super::reference::grid::ExclusiveGridSize;
 use super::reference::linked_cells::CellCounts;
 use super::restored::available_energy;
 use super::scene::HardDiskScene;
-use super::simulation::EngineConfiguration;
 use crate::domain::{BoxSide, Domain};
 use crate::method::{Prepared, Until};
 use crate::number::significant;

@@ -5,6 +5,7 @@ mod checked;
 mod collapse;
 mod collision_log;
 mod compress;
+mod configuration;
 mod engine;
 mod entry;
 mod event;

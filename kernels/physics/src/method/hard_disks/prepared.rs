@@ -2,10 +2,11 @@
 
 use super::checked::{CheckedHardDisks, StartingDiscs};
 use super::collision_log::COLUMNS;
+use super::configuration::EngineConfiguration;
 use super::forecast::{enskog_collision_rate, nanoseconds_per_collision, thermal_speed};
 use super::reference::grid::ExclusiveGridSize;
 use super::reference::linked_cells::CellCounts;
-use super::simulation::{EngineConfiguration, HardDiskSimulation, RecordOptions};
+use super::simulation::{HardDiskSimulation, RecordOptions};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
 use crate::method::reject_several_ranks;

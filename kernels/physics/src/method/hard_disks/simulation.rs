@@ -3,16 +3,14 @@
 use super::checked::StartingDiscs;
 use super::collapse::{CollapseMonitor, EndlessCollisions};
 use super::collision_log::Log;
+use super::configuration::EngineConfiguration;
 use super::engine::{EngineError, EventEngine, EventPartner, ExecutedEvent};
 use super::event::Arena;
 use super::failures::{culprit, failure};
-use super::fast::Fast;
 use super::followed::CrossingCounter;
 use super::identities::DiscIdentities;
 use super::idle::is_idle_forever;
 use super::quantities::{HardDiskObservation, OBSERVABLES};
-use super::reference;
-use super::reference::linked_cells::CellCounts;
 use super::restored::check_restored_discs;
 use super::sums::{CollisionTotals, IntervalMark, IntervalMeans, TotalMotion};
 use crate::io::checkpoint::CheckpointColumn;
@@ -25,9 +23,7 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use stripmine_kernels::InstructionSet;
 use stripmine_kernels::flight::FlyingDisc;
-use stripmine_kernels::mask::Mask;
 
 /// Events, or rebuilds of the grid, between checks for an interruption.
 const INTERRUPT_CHECK_INTERVAL: u64 = 4096;
@@ -62,26 +58,6 @@ pub(super) struct RecordOptions {
     pub(super) logs: bool,
     /// Counts crossings of periodic sides.
     pub(super) follows: bool,
-}
-
-/// Configuration of the search for events.
-#[derive(Clone, Debug)]
-pub(super) enum EngineConfiguration {
-    Fast(InstructionSet),
-    Reference(Mask),
-    CellCrossing(CellCounts),
-}
-
-impl EngineConfiguration {
-    fn engine(&self, arena: Arena, discs: Vec<FlyingDisc>, time: f64) -> Box<dyn EventEngine> {
-        match self {
-            EngineConfiguration::Fast(set) => Box::new(Fast::new(arena, discs, *set, time)),
-            EngineConfiguration::Reference(mask) => reference::engine(arena, discs, mask, time),
-            EngineConfiguration::CellCrossing(counts) => {
-                reference::cell_crossing_engine(arena, discs, *counts, time)
-            }
-        }
-    }
 }
 
 impl HardDiskSimulation {
