@@ -41,6 +41,7 @@ fn dimensional_keys_have_units() {
         "damping",
         "structure_share",
         "screening",
+        "discs_in_cell",
     ];
     for key in METHODS.iter().flat_map(|method| method.vocabulary.keys.keys()) {
         let measures = matches!(key.kind, Number(_) | Pair(_) | Pairs | Numbers(_));

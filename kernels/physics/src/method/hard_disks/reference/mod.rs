@@ -116,11 +116,12 @@ pub(crate) fn cell_crossing_engine(
     time: f64,
 ) -> Box<dyn EventEngine> {
     let cells = LinkedCells::new(arena.domain, counts);
-    Box::new(TournamentEngine::new(arena, discs, cells, f64::INFINITY, time))
+    // Cells that discs cross hold forever; the reach is finite, as a checkpoint stores it.
+    Box::new(TournamentEngine::new(arena, discs, cells, f64::MAX, time))
 }
 
 impl<C: DiscCells> TournamentEngine<C> {
-    /// Takes the discs at a time; the cells contain every other disc within `reach` (length) of a disc, infinite if they do at any time.
+    /// Takes the discs at a time; the cells contain every other disc within `reach` (length) of a disc.
     fn new(arena: Arena, discs: Vec<FlyingDisc>, cells: C, reach: f64, time: f64) -> TournamentEngine<C> {
         let largest = discs.iter().map(|disc| disc.radius).fold(0.0, f64::max);
         TournamentEngine {
