@@ -68,6 +68,9 @@ struct PageHeader {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ItemCost {
+    /// False if `reproduce` leaves an item of the first chapter to `--all`, because of its time or memory.
+    #[serde(default = "yes")]
+    pub default: bool,
     /// Seconds of the quick size; none where the item is only made in full.
     pub quick: Option<f64>,
     /// Seconds in full.
@@ -81,6 +84,10 @@ pub(crate) struct ItemCost {
         expect(dead_code, reason = "a test compares it with the memory of the report's host")
     )]
     pub memory: u64,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// Memory that most items stay below (MiB).

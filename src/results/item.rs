@@ -42,7 +42,7 @@ impl Item {
 
     /// Cost stated in the template.
     fn cost(&self) -> ItemCost {
-        let none = ItemCost { quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
+        let none = ItemCost { default: true, quick: None, full: 0.0, all: None, memory: USUAL_MEMORY };
         self.page().map_or(none, |page| page.cost())
     }
 
@@ -53,7 +53,7 @@ impl Item {
 
     /// Returns true if `reproduce` makes it without `--all`.
     pub(crate) fn is_default(&self) -> bool {
-        self.chapter() == Chapter::Sources
+        self.chapter() == Chapter::Sources && self.cost().default
     }
 
     /// Expected duration (s).

@@ -13,7 +13,7 @@ use stripmine_physics::scene::Overrides;
 /// Measured work: the tasks of the output.
 pub(super) const WORK: StudyWork = StudyWork { name: "langevin-output", measure: |_| measure_output() };
 
-/// Steps, each of which writes.
+/// Number of steps; output follows each.
 const STEPS: usize = 100;
 /// Step of the velocities (time); γ = m = kT = 1.
 const DT: f64 = 0.001;
@@ -121,7 +121,7 @@ pub(super) fn frame(measured: &MeasuredCase) -> ResultFrame {
 mod tests {
     use super::*;
 
-    /// By hand: two particles, of which one has moved by (3, 4).
+    /// By hand, for two particles; the first has moved by (3, 4).
     #[test]
     fn output_has_positions_and_the_mean() {
         let (mut trajectory, mut means) = (vec![], vec![]);

@@ -9,6 +9,7 @@ pub mod choice;
 pub(crate) mod grid;
 mod half_space;
 pub(super) mod linked_cells;
+mod predicted;
 mod tournament;
 pub mod trial;
 
@@ -21,40 +22,10 @@ use crate::method::Snapshot;
 use grid::{CellMisfit, DiscCells, ExclusiveGrid, ExclusiveGridSize};
 use half_space::HalfSpaceGrid;
 use linked_cells::{CellCounts, LinkedCells};
+use predicted::{PredictedEvent, WALL};
 use stripmine_kernels::flight::{FlyingDisc, Space, collision_time};
 use stripmine_kernels::mask::Mask;
 use tournament::TournamentTree;
-
-/// Code of a wall across the first axis; that of the second one follows. Smaller codes are numbers of discs.
-const WALL: u32 = u32::MAX - 1;
-
-/// Predicted next collision of a disc with another one or a wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct PredictedEvent {
-    /// Time of the event; infinite if none.
-    time: f64,
-    /// Number of the other disc, or code of a wall.
-    with: u32,
-    /// Events of the other disc before the prediction. It is invalid if there are more when it is due.
-    events: u32,
-}
-
-impl PredictedEvent {
-    /// No event.
-    const NONE: PredictedEvent = PredictedEvent { time: f64::INFINITY, with: WALL, events: 0 };
-
-    /// Collision with a disc.
-    #[inline(always)]
-    fn with_disc(time: f64, number: u32, disc: &FlyingDisc) -> PredictedEvent {
-        PredictedEvent { time, with: number, events: disc.events as u32 }
-    }
-
-    /// True if it precedes another event of the same disc; of two at one time, the one with the smaller partner comes first.
-    #[inline(always)]
-    fn is_before(&self, other: &PredictedEvent) -> bool {
-        self.time < other.time || self.time == other.time && self.with < other.with
-    }
-}
 
 /// Engine over cells of type `C`.
 #[derive(Clone, Debug)]
@@ -219,9 +190,7 @@ impl<C: DiscCells> TournamentEngine<C> {
                 if known.with == disc {
                     lost.push(other);
                 } else if ours.is_before(&known) {
-                    events[other as usize] = ours;
-                    tree.update(other, events.len(), |disc| Self::due_time(cells, events, disc));
-                    operations.queue_moves += 1;
+                    Self::replace((cells, events, tree, operations), other, ours);
                 }
             });
             self.cells.predict_crossing(&self.arena, disc, &self.discs[disc as usize], now);
@@ -260,9 +229,7 @@ impl<C: DiscCells> TournamentEngine<C> {
             }
             let ours = PredictedEvent::with_disc(time, disc, &discs[disc as usize]);
             if ours.is_before(&events[other as usize]) {
-                events[other as usize] = ours;
-                tree.update(other, events.len(), |disc| Self::due_time(cells, events, disc));
-                operations.queue_moves += 1;
+                Self::replace((cells, events, tree, operations), other, ours);
             }
         });
         self.cells.predict_crossing(&self.arena, disc, &self.discs[disc as usize], now);
@@ -271,10 +238,20 @@ impl<C: DiscCells> TournamentEngine<C> {
 
     /// Replaces the next event of a disc.
     fn renew(&mut self, disc: u32, event: PredictedEvent) {
-        let TournamentEngine { events, tree, cells, .. } = self;
+        let TournamentEngine { cells, events, tree, operations, .. } = self;
+        Self::replace((cells, events, tree, operations), disc, event);
+    }
+
+    /// Replaces the next event of a disc, given the parts of the engine that this concerns.
+    #[inline(always)]
+    fn replace(
+        (cells, events, tree, operations): (&C, &mut [PredictedEvent], &mut TournamentTree, &mut Operations),
+        disc: u32,
+        event: PredictedEvent,
+    ) {
         events[disc as usize] = event;
         tree.update(disc, events.len(), |disc| Self::due_time(cells, events, disc));
-        self.operations.queue_moves += 1;
+        operations.queue_moves += 1;
     }
 
     fn at_wall(&self, disc: u32) -> PredictedEvent {
