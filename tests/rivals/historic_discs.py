@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Pressure of hard discs beside published values: 870 discs at ten packing fractions (Li et al. 2022), three dilute gases (virial series), and
+512 x 512 discs between fluid and crystal, from both sides. About an hour on two cores; no test needs it.
+
+    python3 tests/rivals/historic_discs.py --work FOLDER [--out FOLDER]
+
+An interrupted call resumes in the folder of its runs. Boxes are periodic squares. Error bars are half-widths of 95 % from the scatter of the runs.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import subprocess
+import sys
+
+from provenance import is_traceable, provenance, write
+
+# Packing fractions, discs, collisions of a run, runs, and start.
+DILUTE = [(nu, 870, 20_000_000, 8, "compressed") for nu in (0.1, 0.2, 0.3)]
+DENSE = [(nu, 870, 200_000_000, 8, "compressed") for nu in (0.67, 0.674, 0.68, 0.686, 0.69, 0.694, 0.698, 0.7, 0.71, 0.718)]
+# The crystal stays above the fluid in order and below it in pressure, as long as neither has relaxed.
+MELTING = [(nu, 512 * 512, 250_000_000, 1, start) for nu in (0.698, 0.7, 0.71, 0.716) for start in ("compressed", "hexagonal")]
+SCENE = """format = 2
+units = "reduced"
+[method]
+kind = "hard-disks"
+{domain}
+[particles]
+generate = "{start}"
+count = {count}
+{fraction}
+radius = 0.5
+mass = 1.0
+temperature = 1.0
+seed = 1
+[run]
+events = {events}
+thermo_every = {rows!r}
+snapshot_every = 0
+[output]
+trajectory = false
+"""
+
+
+def scene(nu, count, events, start):
+    """Scene of a run with about 2000 rows; its box is square, or nearly so for a crystal."""
+    side = math.sqrt(count * math.pi / (4 * nu))
+    square = f"[domain]\nsides = [{side!r}, {side!r}]\nperiodic = [true, true]"
+    domain, fraction = (square, "") if start == "compressed" else ("", f"packing_fraction = {nu}")
+    # Collisions of a disc per unit of time, by Henderson's pressure.
+    rate = 4 / math.sqrt(math.pi) * ((1 + nu * nu / 8) / (1 - nu) ** 2 - 1)
+    rows = round(events / (count * rate / 2) / 2000, 3)
+    return SCENE.format(domain=domain, start=start, count=count, fraction=fraction, events=events, rows=rows)
+
+
+def measured(program, work, nu, count, events, runs, start):
+    """Mean of Z with its error, over all runs."""
+    folder = work / f"{count}-{nu}-{start}"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(scene(nu, count, events, start))
+    seeds = ["--seeds", str(runs)] if runs > 1 else []
+    made = folder / "runs"
+    call = [program, "run", folder / "scene.toml", "--out", made, "--resume", "--quiet", *seeds]
+    subprocess.run(list(map(str, call)), check=True)
+    folders = sorted(made.glob("seed-*")) or [made]
+    found = json.loads(subprocess.run([program, "average", *folders, "--json"], check=True, capture_output=True, text=True).stdout)
+    of = {it["quantity"]: it for it in found["quantities"]}
+    z = of["compressibility"]
+    row = {"packing_fraction": nu, "discs": count, "start": start, "runs": runs, "collisions": runs * events}
+    row |= {"mean": z.get("mean"), "bar": z.get("bar"), "standard_error": z.get("standard_error"), "transient": z.get("equilibrated_at")}
+    print(row, file=sys.stderr, flush=True)
+    return row
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the runs; an interrupted call resumes there")
+    parser.add_argument("--stripmine", type=pathlib.Path, default=pathlib.Path("target/release/stripmine"))
+    parser.add_argument("--out", type=pathlib.Path, help="folder for pressures.json")
+    asked = parser.parse_args()
+    if asked.out and not is_traceable(asked.out):
+        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
+        return 2
+    if not asked.stripmine.exists():
+        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
+        return 0
+    # The commit is that of the start.
+    provenance()
+    rows = [measured(asked.stripmine.resolve(), asked.work, *state) for state in DILUTE + DENSE + MELTING]
+    if asked.out:
+        write(asked.out, {"pressures.json": json.dumps({"rows": rows}, indent=1) + "\n"})
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
