@@ -2,7 +2,7 @@
 
 use super::study::{
     corrector, damping, density_cost, efficiency_table, identity, ladder, listing, mask, misprints,
-    model_validation, pipe_flow, precision, printed, scaling, searches, useful_work,
+    model_validation, pipe_flow, precision, printed, scaling, searches, useful_work, wave_spectra,
 };
 use crate::results::Item;
 
@@ -26,4 +26,5 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("pipe", pipe_flow::whole_pipe),
     Item::of("pipe-thin", pipe_flow::thin_pipe),
     Item::of("waves", damping::reproduce),
+    Item::of("wave-spectra", wave_spectra::reproduce),
 ];

@@ -29,10 +29,11 @@ pub use crate::input::{
 pub use binding::{Binding, ReadBinding, Write};
 pub(crate) use disc_keys::{
     CLEAR_WIDTH, FILE, FILL_HEIGHT, GENERATE, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SPEED,
-    WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS, WALL_SPACING,
+    WALL_AMPLITUDE, WALL_POSITIONS, WALL_RADIUS,
 };
 pub use disc_keys::{
     COUNT, DISC_RIVALS, DISCS, PACKING_FRACTION, POSITIONS, SEED, SPACING, TEMPERATURE, VELOCITIES,
+    WALL_SPACING,
 };
 pub use discs::{Amount, DiscStart, GeneratedDiscs, List, Speed, WallLining, WallMotion};
 pub use domain::{GRAVITY, PLANAR_DOMAIN, SIDES, SceneDomain};

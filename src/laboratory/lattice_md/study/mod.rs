@@ -19,5 +19,6 @@ mod samples;
 pub(super) mod scaling;
 pub(super) mod searches;
 pub(super) mod useful_work;
+pub(super) mod wave_spectra;
 
 use crate::study::StudyError;
