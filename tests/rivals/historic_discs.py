@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Pressure of hard discs beside published values: 870 discs at ten packing fractions (Li et al. 2022), three dilute gases (virial series), and
-512 x 512 discs between fluid and crystal, from both sides. About an hour on two cores; no test needs it.
+512 x 512 discs between fluid and crystal, from both sides. About two hours on two cores; no test needs it.
 
-    python3 tests/rivals/historic_discs.py --work FOLDER [--out FOLDER]
+    python3 tests/rivals/historic_discs.py --work FOLDER [--out FOLDER] [--share 1]
 
 An interrupted call resumes in the folder of its runs. Boxes are periodic squares. Error bars are half-widths of 95 % from the scatter of the runs.
 """
@@ -19,7 +19,7 @@ from provenance import is_traceable, provenance, write
 # Packing fractions, discs, collisions of a run, runs, and start.
 # So many discs that the share 1/N of pairs that a disc makes with itself is below the error.
 DILUTE = [(nu, 40_000, 20_000_000, 8, "compressed") for nu in (0.1, 0.2, 0.3)]
-DENSE = [(nu, 870, 200_000_000, 8, "compressed") for nu in (0.67, 0.674, 0.68, 0.686, 0.69, 0.694, 0.698, 0.7, 0.71, 0.718)]
+DENSE = [(nu, 870, 400_000_000, 8, "compressed") for nu in (0.67, 0.674, 0.68, 0.686, 0.69, 0.694, 0.698, 0.7, 0.71, 0.718)]
 # The crystal stays above the fluid in order and below it in pressure, as long as neither has relaxed.
 MELTING = [(nu, 512 * 512, 250_000_000, 1, start) for nu in (0.698, 0.7, 0.71, 0.716) for start in ("compressed", "hexagonal")]
 SCENE = """format = 2
@@ -77,6 +77,7 @@ def measured(program, work, nu, count, events, runs, start):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder of the runs; an interrupted call resumes there")
+    parser.add_argument("--share", type=float, default=1.0, help="share of the collisions")
     parser.add_argument("--stripmine", type=pathlib.Path, default=pathlib.Path("target/release/stripmine"))
     parser.add_argument("--out", type=pathlib.Path, help="folder for pressures.json")
     asked = parser.parse_args()
@@ -88,7 +89,8 @@ def main():
         return 0
     # The commit is that of the start.
     provenance()
-    rows = [measured(asked.stripmine.resolve(), asked.work, *state) for state in DILUTE + DENSE + MELTING]
+    states = [(nu, count, int(events * asked.share), runs, start) for nu, count, events, runs, start in DILUTE + DENSE + MELTING]
+    rows = [measured(asked.stripmine.resolve(), asked.work, *state) for state in states]
     if asked.out:
         write(asked.out, {"pressures.json": json.dumps({"rows": rows}, indent=1) + "\n"})
     return 0
