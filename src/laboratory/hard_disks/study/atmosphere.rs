@@ -4,7 +4,7 @@ use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, TableCell};
 use crate::laboratory::running::RunningScene;
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
-use crate::statistics::MeanWithBar;
+use crate::statistics::{MeanWithBar, slope, slope_error};
 use crate::study::StudyError;
 use stripmine_physics::method::Until;
 use stripmine_physics::method::hard_disks::keys::{ENGINE, RESTITUTION, TIME};
@@ -17,6 +17,10 @@ use stripmine_physics::scene::{COUNT, GRAVITY, Overrides, SIDES};
 const GASES: [(f64, f64); 4] = [(0.02, 1.0), (0.2, 1.0), (1.0, 1.0), (1.0, 0.95)];
 /// Scenes for ISO99's look-up of occupied cells.
 const SCENES: [&str; 2] = ["hot-floor", "vibrating-floor"];
+/// Discs of the atmospheres in which the look-up is counted; each has 0.2 layers and kT/(m g) of [`SCALE`].
+const SIZES: [usize; 4] = [200, 800, 3200, 12_800];
+/// kT/(m g), in diameters.
+const SCALE: f64 = 20.0;
 /// Discs in a gas.
 const DISCS: usize = 200;
 /// Samples of a gas, a time √(kT/m)/g apart.
@@ -39,9 +43,13 @@ struct Profile {
 
 /// Simulates the gases, and counts the entries of ISO99's look-up.
 pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
-    let meter = ProgressMeter::new((GASES.len() + SCENES.len()) as f64, lab.progress);
+    let runs = GASES.len() + SCENES.len() + SIZES.len();
+    let meter = ProgressMeter::new(runs as f64, lab.progress);
     let profiles = meter.run_cases(&GASES, measure_profile)?;
     let look_ups = meter.run_cases(&SCENES, |&scene| compare_look_up(scene))?;
+    let growth = meter.run_cases_from_last(&SIZES, |&discs| count_look_up(discs))?;
+    let logarithms = |of: fn(&[f64; 2]) -> f64| growth.iter().map(|it| of(it).ln()).collect::<Vec<_>>();
+    let (discs, entries) = (logarithms(|it| it[0]), logarithms(|it| it[1]));
     let bins = profiles.iter().flat_map(|it| it.densities.iter().enumerate().map(move |bin| (it, bin)));
     let height = |bin: usize| (bin as f64 + 0.5) * BINS.0;
     Ok(FinishedItem::of([
@@ -62,6 +70,15 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, _: StudySize) -> Result<Fini
                 if source.all() == fast.all() { "yes" } else { "no" }
             })
             .frame("look-up", "The source's look-up of occupied cells, as printed"),
+        FrameBuilder::of(&growth)
+            .number("discs", 0, |it| it[0])
+            .number("entries of C and D", 0, |it| it[1])
+            .number("entries of a disc", 2, |it| it[1] / it[0])
+            .frame("growth", "The look-up in atmospheres of 0.2 layers"),
+        FrameBuilder::of([()])
+            .number("power", 2, |()| slope(&discs, &entries))
+            .number("± (95 %)", 2, |()| slope_error(&discs, &entries))
+            .frame("powers", "Power of the number of discs by which the entries of C and D grow"),
         FrameBuilder::of(bins)
             .text("discs", |(it, _)| it.name.clone())
             .number("height over kT/(m g)", 3, |(_, (bin, _))| height(*bin))
@@ -86,12 +103,28 @@ fn compare_look_up(scene: &'static str) -> Result<(&'static str, [RunningScene; 
     Ok((scene, [source, run(EngineChoice::Fast)?], entries))
 }
 
-/// Measures a gas with diameter, mass and kT of 1 and kT/(m g) of 20.
+/// A gas with diameter, mass and kT of 1, and kT/(m g) of [`SCALE`].
+fn atmosphere(discs: usize, layers: f64) -> Overrides {
+    let place = Overrides::new().set(&SIDES, [discs as f64 / layers, 120.0]);
+    place.set(&GRAVITY, [0.0, -1.0 / SCALE]).set(&COUNT, discs).set(&TIME, 1e9)
+}
+
+/// Number of discs, and the entries of ISO99's look-up: the mean of ten samples in equilibrium.
+fn count_look_up(discs: usize) -> Result<[f64; 2], StudyError> {
+    let overrides = atmosphere(discs, 0.2).set(&ENGINE, EngineChoice::Reference);
+    let mut gas = RunningScene::begin("hot-floor", &overrides)?;
+    let mut entries = 0.0;
+    for sample in 1..=10 {
+        gas.advance_until(Until::Time(10.0 * SCALE + f64::from(sample) * SCALE))?;
+        entries += summary_number(&gas.simulation.summary(), "blocks")? / 10.0;
+    }
+    Ok([discs as f64, entries])
+}
+
+/// Measures the profile of a gas.
 fn measure_profile(&(layers, restitution): &(f64, f64)) -> Result<Profile, StudyError> {
-    let height = 20.0;
-    let width = DISCS as f64 / layers;
-    let place = Overrides::new().set(&SIDES, [width, 120.0]).set(&GRAVITY, [0.0, -1.0 / height]);
-    let overrides = place.set(&COUNT, DISCS).set(&RESTITUTION, restitution).set(&TIME, 1e9);
+    let height = SCALE;
+    let overrides = atmosphere(DISCS, layers).set(&RESTITUTION, restitution);
     let mut gas = RunningScene::begin("hot-floor", &overrides)?;
     // A disc falls through the height in a time of about √2 √(kT/m)/g.
     let between = height;

@@ -10,6 +10,7 @@ use crate::laboratory::rates::{
 };
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
 use rand::RngExt;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use stripmine_kernels::noise::{RandomPurpose, Stream};
 use stripmine_kernels::{Execution, InstructionSet};
@@ -26,6 +27,8 @@ use stripmine_physics::scene::{COUNT, Overrides, PACKING_FRACTION, Precision};
 const OCCUPANCY: f64 = 0.25;
 /// LMAX of the measurements over ρ.
 const CELLS: usize = 10_000;
+/// LMAX of the scalar execution: within the range of the line.
+const SCALAR: usize = 500;
 /// Share of the line within which it holds.
 const HOLDS: f64 = 0.1;
 /// ρ of the scene for the comparison of whole steps.
@@ -52,11 +55,19 @@ const FAST: &str = "fast";
 pub(crate) const EAGER: StudyWork = StudyWork {
     name: "eager-parts",
     measure: |parameters| {
-        let (cells, occupancy, is_ours, samples): (usize, f64, bool, usize) = parse_parameters(parameters)?;
-        let choice = if is_ours { TableFeatures::default() } else { TableFeatures::default().printed() };
-        Ok(time_eager_step(cells, occupancy, choice, samples)?)
+        let (cells, occupancy, kind, samples): (usize, f64, StepKind, usize) = parse_parameters(parameters)?;
+        Ok(time_eager_step(cells, occupancy, kind, samples)?)
     },
 };
+
+/// Program of a measured step, and its execution.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+enum StepKind {
+    Printed,
+    /// The printed program, one element of an operation after the other.
+    PrintedScalar,
+    Ours,
+}
 
 /// Times of a part of the eager step on a lattice.
 struct TimedPart {
@@ -106,11 +117,12 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         StudySize::Quick => (SHORT.to_vec(), &[1.0], 3, 1000),
         StudySize::Full | StudySize::All => ([&SHORT[..], &LONG].concat(), &[0.05, 0.1, 0.5, 1.0], 8, 10_000),
     };
-    let over_n = cells.into_iter().map(|cells| (cells, OCCUPANCY, false));
-    let over_density = occupancies.iter().map(|&occupancy| (CELLS, occupancy, false));
-    let places: Vec<_> = over_n.chain(over_density).chain([(CELLS, OCCUPANCY, true)]).collect();
-    let parts = places.iter().map(|&(cells, occupancy, ours)| {
-        let parameters = serde_json::json!([cells, occupancy, ours, samples]);
+    let over_n = cells.into_iter().map(|cells| (cells, OCCUPANCY, StepKind::Printed));
+    let over_density = occupancies.iter().map(|&occupancy| (CELLS, occupancy, StepKind::Printed));
+    let others = [(SCALAR, OCCUPANCY, StepKind::PrintedScalar), (CELLS, OCCUPANCY, StepKind::Ours)];
+    let places: Vec<_> = over_n.chain(over_density).chain(others).collect();
+    let parts = places.iter().map(|&(cells, occupancy, kind)| {
+        let parameters = serde_json::json!([cells, occupancy, kind, samples]);
         let occupancy = TableCell::Number(occupancy, 2);
         RateCase::own(&EAGER, parameters).label("cells", cells as u64).label("occupancy", occupancy)
     });
@@ -130,20 +142,22 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     });
     let measured = measure_rates(lab, &parts.chain(configurations).collect::<Vec<_>>())?;
     let (eager, configurations) = measured.split_at(places.len());
-    let all = places.iter().zip(eager).filter(|((.., ours), _)| !ours);
-    let timed: Vec<TimedPart> = all
-        .flat_map(|(&(cells, occupancy, _), it)| {
+    let times_of = |wanted: StepKind| -> Vec<TimedPart> {
+        let all = places.iter().zip(eager).filter(|((.., kind), _)| *kind == wanted);
+        all.flat_map(|(&(cells, occupancy, _), it)| {
             SOURCES_PARTS.map(|part| TimedPart::of(part.name(), cells, occupancy, it))
         })
-        .collect();
+        .collect()
+    };
+    let (timed, scalar) = (times_of(StepKind::Printed), times_of(StepKind::PrintedScalar));
     let fitted = SOURCES_PARTS.map(|part| fit_clock_line(part.name(), &timed));
     let frames = [
         vector_frame(&timed, &fitted),
-        fits(&fitted),
+        fits(&fitted, &scalar),
         densities(&timed),
         configuration_costs(configurations),
     ];
-    let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, false));
+    let at = places.iter().position(|place| *place == (CELLS, OCCUPANCY, StepKind::Printed));
     let summary = FrameBuilder::of(at.map(|at| [&eager[at], &eager[eager.len() - 1]]))
         .cell("printed text, eager (µs)", |[printed, _]| printed.cost().cell(1e6, 0))
         .cell("our text, eager (µs)", |[_, ours]| ours.cost().cell(1e6, 0))
@@ -186,9 +200,11 @@ fn scattered_discs(model: &GranularModel, occupancy: f64) -> Particles {
 fn time_eager_step(
     cells: usize,
     occupancy: f64,
-    choice: TableFeatures,
+    kind: StepKind,
     samples: usize,
 ) -> Result<CaseReading, MeasurementError> {
+    let ours = TableFeatures::default();
+    let choice = if kind == StepKind::Ours { ours } else { ours.printed() };
     let model = GranularModel { dt: 1e-9, ..counting_model(cells, choice)? };
     let particles = scattered_discs(&model, occupancy);
     let mut arrays = ProgramArrays::<f64, f64>::new(&model, &particles);
@@ -197,7 +213,10 @@ fn time_eager_step(
     let is_there = |part: &Part| step.iter().any(|step| step.part == *part);
     let parts: Vec<Part> = Part::ALL.iter().copied().filter(is_there).collect();
     let mut all = vec![Samples::default(); parts.len()];
-    let set = InstructionSet::best();
+    let set = match kind {
+        StepKind::PrintedScalar => InstructionSet::Scalar,
+        StepKind::Printed | StepKind::Ours => InstructionSet::best(),
+    };
     // About 20 ms per sample on short lattices; one step on the longest, far beyond the validity of the line.
     let times = (3_000_000 / (cells * 40)).clamp(1, 200);
     for _ in 0..(4_000_000 / cells / rates::PROCESSES).clamp(1, samples) {
@@ -296,15 +315,21 @@ fn vector_frame(timed: &[TimedPart], fitted: &[FittedPart]) -> ResultFrame {
         .frame("vectors", "Time an element and operation of the printed text, eager")
 }
 
-fn fits(fitted: &[FittedPart]) -> ResultFrame {
-    FrameBuilder::of(fitted)
-        .text("part", |fitted| fitted.part)
-        .count("NOP", |fitted| fitted.nop)
-        .cell("clock period (ns)", |fitted| fitted.period.cell(1.0, 3))
-        .cell("D", |fitted| fitted.depth.cell(1.0, 0))
-        .count("holds to n", |fitted| fitted.holds_to)
-        .number("largest difference (%)", 1, |fitted| 100.0 * fitted.worst)
-        .number("times the line at the longest n", 2, |fitted| fitted.beyond)
+/// `scalar` has a part for each fit.
+fn fits(fitted: &[FittedPart], scalar: &[TimedPart]) -> ResultFrame {
+    let per_element = |it: &TimedPart| it.ns().median / (it.nop * it.n as u64) as f64;
+    FrameBuilder::of(fitted.iter().zip(scalar))
+        .text("part", |(fitted, _)| fitted.part)
+        .count("NOP", |(fitted, _)| fitted.nop)
+        .cell("clock period (ns)", |(fitted, _)| fitted.period.cell(1.0, 3))
+        .cell("D", |(fitted, _)| fitted.depth.cell(1.0, 0))
+        .count("holds to n", |(fitted, _)| fitted.holds_to)
+        .number("largest difference (%)", 1, |(fitted, _)| 100.0 * fitted.worst)
+        .number("times the line at the longest n", 2, |(fitted, _)| fitted.beyond)
+        .number("scalar, an element and operation (ns)", 3, |(_, scalar)| per_element(scalar))
+        .number("scalar over D clock periods", 2, |(fitted, scalar)| {
+            per_element(scalar) / (fitted.period.median * fitted.depth.median)
+        })
         .frame("fits", "NOP·(n + D) on this host, part by part")
 }
 
@@ -380,7 +405,7 @@ mod tests {
 
     #[test]
     fn every_part_of_the_table_is_timed() {
-        let reading = time_eager_step(400, 0.5, TableFeatures::default().printed(), 1).unwrap();
+        let reading = time_eager_step(400, 0.5, StepKind::Printed, 1).unwrap();
         for part in SOURCES_PARTS.map(Part::name) {
             let count = |kind: &str| reading.counts[&format!("{kind} of {part}")];
             assert!(count("n") > 100.0 && count("NOP") > 10.0 && reading.parts[part] > 0.0, "{reading:?}");
