@@ -19,7 +19,9 @@ from provenance import is_traceable, provenance, write
 # Packing fractions, discs, collisions of a run, runs, and start.
 # So many discs that the share 1/N of pairs that a disc makes with itself is below the error.
 DILUTE = [(nu, 40_000, 20_000_000, 8, "compressed") for nu in (0.1, 0.2, 0.3)]
-DENSE = [(nu, 870, 400_000_000, 8, "compressed") for nu in (0.67, 0.674, 0.68, 0.686, 0.69, 0.694, 0.698, 0.7, 0.71, 0.718)]
+FLUIDS, CRYSTALS = (0.67, 0.674, 0.68, 0.686, 0.69, 0.694, 0.698, 0.7), (0.71, 0.718)
+# Crystals forget their start late.
+DENSE = [(nu, 870, 400_000_000, 8, "compressed") for nu in FLUIDS] + [(nu, 870, 1_000_000_000, 8, "compressed") for nu in CRYSTALS]
 # The crystal stays above the fluid in order and below it in pressure, as long as neither has relaxed.
 MELTING = [(nu, 512 * 512, 250_000_000, 1, start) for nu in (0.698, 0.7, 0.71, 0.716) for start in ("compressed", "hexagonal")]
 SCENE = """format = 2
