@@ -356,6 +356,16 @@ fn impossible_hard_disc_scenes_are_refused() {
         &["too small for lists"],
     );
     refused("hard-disks", &["particles.count=20", "search.mask=r10"], 3, &["r10 does not serve", "one of"]);
+    // Cells of 40/57: R = 5 covers radii up to 1 : 2.98, R = 6 up to 1 : 3.78, R = 10 up to 1 : 6.47.
+    let unequal = |radius: &str, mask: &str, words: &[&str]| {
+        let [radius, mask] = [("particles.second_radius", radius), ("search.mask", mask)]
+            .map(|(key, value)| format!("{key}={value}"));
+        let mixture = ["domain.sides=[40.0, 40.0]", "particles.generate=random", "particles.count=20"];
+        let set = [&mixture[..], &["particles.second_share=0.5", &radius, &mask, "machine.engine=reference"]];
+        refused("hard-disks", &set.concat(), 3, words);
+    };
+    unequal("1.75", "min", &["mask min does not serve", "one of r6, r7, r8, r9, r10"]);
+    unequal("3.5", "auto", &["no mask serves", "radii that differ less"]);
     refused(
         "hot-floor",
         &["machine.engine=cell-crossing"],

@@ -5,6 +5,7 @@
 pub(crate) mod hard_disks;
 pub(crate) mod langevin;
 pub(crate) mod lattice_md;
+mod mixtures;
 pub(crate) mod nbody;
 pub(crate) mod programs;
 pub(crate) mod rates;

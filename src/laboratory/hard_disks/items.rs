@@ -2,7 +2,7 @@
 
 use super::study::{
     atmosphere, cells, collapse, complexity, cooling, crossing, errors, fluid, lifetimes, masks, precision,
-    rates, soft_hard, structure,
+    rates, soft_hard, structure, unequal,
 };
 use crate::results::Item;
 
@@ -15,6 +15,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-cells", cells::reproduce),
     Item::of("hard-disks-lifetimes", lifetimes::reproduce),
     Item::of("hard-disks-crossing", crossing::reproduce),
+    Item::of("hard-disks-unequal", unequal::reproduce),
     Item::of("hard-disks-complexity", complexity::reproduce),
     Item::of("hard-disks-cooling", cooling::reproduce),
     Item::of("hard-disks-collapse", collapse::reproduce),

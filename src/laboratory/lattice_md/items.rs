@@ -2,7 +2,7 @@
 
 use super::study::{
     corrector, damping, density_cost, efficiency_table, identity, ladder, listing, mask, misprints,
-    model_validation, pipe_flow, precision, printed, scaling, searches, useful_work, wave_spectra,
+    model_validation, pipe_flow, precision, printed, scaling, searches, unequal, useful_work, wave_spectra,
 };
 use crate::results::Item;
 
@@ -19,6 +19,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("printed", printed::reproduce),
     Item::of("scaling", scaling::reproduce),
     Item::of("searches", searches::reproduce),
+    Item::of("unequal", unequal::reproduce),
     Item::of("validation", model_validation::reproduce),
     Item::of("identity", identity::reproduce),
     Item::of("precision", precision::reproduce),

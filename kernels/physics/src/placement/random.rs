@@ -74,7 +74,8 @@ pub(crate) struct PlacementJammed {
 /// Tries for one disc. Near saturation one in about ten thousand succeeds.
 const TRIES: usize = 200_000;
 
-/// Places discs with ids from 1 on, at rest, one after the other where they overlap nothing. The result depends on the filling alone.
+/// Places discs with ids from 1 on, at rest, one after the other where they overlap nothing; those of the larger kind are first, as they find
+/// no room among many small ones. The result depends on the filling alone.
 ///
 /// # Errors
 /// [`PlacementJammed`] if a disc finds no free space.
@@ -90,10 +91,12 @@ pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Partic
         circles.push(disc.radius);
     }
     let mut discs = Vec::new();
-    for id in 1..=count as u32 {
+    let ids = || 1..=count as u32;
+    let kind = |id: u32| if second.has(id) { second.radius } else { mean };
+    let is_large = |id: u32| kind(id) == second.largest(mean);
+    for id in ids().filter(|&id| is_large(id)).chain(ids().filter(|&id| !is_large(id))) {
         let mut stream = Stream::new(seed, RandomPurpose::Placement, id);
-        let kind = if second.has(id) { second.radius } else { mean };
-        let radius = kind * (1.0 + stream.sample(TruncatedNormal { deviation: filling.spread, cut }));
+        let radius = kind(id) * (1.0 + stream.sample(TruncatedNormal { deviation: filling.spread, cut }));
         let jammed = PlacementJammed { placed: discs.len(), asked: count, tries: TRIES };
         let ranges = [0, 1].map(|axis| {
             let [low, high] = room.map(|corner| corner[axis]);
@@ -126,6 +129,7 @@ pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Partic
             mass: mass * share * share,
         });
     }
+    discs.sort_unstable_by_key(|disc| disc.id);
     Ok(discs)
 }
 
@@ -219,6 +223,20 @@ mod tests {
             filling().domain.distance(a.planar_position(), b.planar_position()) < a.radius + b.radius
         };
         assert!(discs.iter().enumerate().all(|(i, a)| discs[..i].iter().all(|b| !overlap(a, b))));
+    }
+
+    /// 990 discs of radius 0.5 and 9 of radius 5 cover a half; among the small ones a large one would find no room.
+    #[test]
+    fn large_discs_are_placed_before_small_ones() {
+        let domain = Domain::planar([0.0; 2], [54.6; 2], [true; 2]);
+        let kinds =
+            [(0.5, Second { radius: 5.0, share: 0.0099 }), (5.0, Second { radius: 0.5, share: 0.99 })];
+        for (radius, second) in kinds {
+            let mixture = RandomPlacement { domain, count: 999, radius, second, spread: 0.0, ..filling() };
+            let discs = place_randomly(&RandomPlacement { room: [[0.0; 2], [54.6; 2]], ..mixture }).unwrap();
+            assert!((9..=11).contains(&discs.iter().filter(|disc| disc.radius == 5.0).count()));
+            assert!(discs.iter().zip(1..).all(|(disc, id)| disc.id == id));
+        }
     }
 
     #[test]

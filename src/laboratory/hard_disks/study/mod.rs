@@ -14,6 +14,7 @@ pub(crate) mod precision;
 pub(crate) mod rates;
 pub(crate) mod soft_hard;
 pub(crate) mod structure;
+pub(crate) mod unequal;
 
 use crate::laboratory::running::RunningScene;
 use stripmine_physics::method::hard_disks::INELASTIC_COLLAPSE;

@@ -18,6 +18,7 @@ pub(super) mod printed;
 mod samples;
 pub(super) mod scaling;
 pub(super) mod searches;
+pub(super) mod unequal;
 pub(super) mod useful_work;
 pub(super) mod wave_spectra;
 

@@ -104,8 +104,8 @@ impl RegistrationCells {
         self.is_approximate
     }
 
-    /// Finds the discs within sight of a position inside the box, and perhaps some that are slightly farther, that pass a test. Returns
-    /// their number; none if there are too many.
+    /// Finds the discs within sight of a position inside the box, and perhaps some that are slightly farther, that pass a test, and adds
+    /// them to the first `count`. Returns their number; none if there are too many.
     #[inline(always)]
     pub(super) fn find<R: Registers<Lane = f32>>(
         &self,
@@ -114,11 +114,11 @@ impl RegistrationCells {
         position: [f64; 2],
         is_near: impl Fn(u32) -> bool,
         found: &mut [u32; FOUND],
+        mut count: usize,
     ) -> Option<usize> {
         let CellPosition { cell: [column, row], relative: [own_x, own_y] } = self.locate(domain, position);
         let (near, x) = (registers.splat(self.near), registers.splat(own_x));
         let left = self.slots_on_the_left(own_x);
-        let mut count = 0;
         for step in [-1, 0, 1] {
             let Some(row) = self.neighbouring_row(row, step) else { continue };
             let first = self.slot([column, row]) - left;
@@ -158,6 +158,48 @@ impl RegistrationCells {
             }
         }
         Some(count)
+    }
+
+    /// Finds the discs within a reach (length) of a position inside the box, which may be beyond the neighbouring cells, that pass a test; the test
+    /// is exact. Adds them to the first `count`, and returns their number; none if there are too many.
+    pub(super) fn find_beyond(
+        &self,
+        domain: &Domain,
+        position: [f64; 2],
+        reach: f64,
+        is_near: impl Fn(u32) -> bool,
+        found: &mut [u32; FOUND],
+        mut count: usize,
+    ) -> Option<usize> {
+        let CellPosition { cell, .. } = self.locate(domain, position);
+        let [columns, rows] = [0, 1].map(|axis| self.within(axis, cell[axis], reach));
+        for row in rows {
+            for column in columns.clone() {
+                let first = self.slot([column, row]);
+                let slots = self.discs[first..first + self.slots].iter().filter(|disc| **disc != EMPTY);
+                for &disc in slots.filter(|disc| is_near(**disc)) {
+                    *found.get_mut(count)? = disc;
+                    count += 1;
+                }
+            }
+            for &(disc, _) in self.crowded[row].iter().filter(|(disc, _)| is_near(*disc)) {
+                *found.get_mut(count)? = disc;
+                count += 1;
+            }
+        }
+        Some(count)
+    }
+
+    /// Columns or rows of the cells within a reach of a cell, each once.
+    fn within(&self, axis: usize, cell: usize, reach: f64) -> impl Iterator<Item = usize> + Clone + use<> {
+        let (count, cell, wraps) = (self.counts[axis] as isize, cell as isize, self.wraps[axis]);
+        let most = (reach / self.edge[axis]).ceil() as isize;
+        let (first, last) = match 2 * most + 1 < count {
+            true => (cell - most, cell + most),
+            false => (0, count - 1),
+        };
+        let is_there = move |at: &isize| wraps || (0..count).contains(at);
+        (first..=last).filter(is_there).map(move |at| at.rem_euclid(count) as usize)
     }
 
     /// Prefetches the cache lines that a search around a position reads.

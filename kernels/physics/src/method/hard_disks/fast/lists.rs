@@ -4,7 +4,8 @@
 //! A disc within `displacement_limit` of its registered position meets only discs registered within the sum of the radii and twice
 //! the displacement limit. Those are in its list, and it is in theirs.
 
-use super::cells::{FOUND, RegistrationCells};
+use super::cells::FOUND;
+use super::grids::{RegistrationGrids, SizeClass};
 use crate::domain::Domain;
 use stripmine_kernels::backend::Registers;
 use stripmine_kernels::flight::{FlyingDisc, ROW_UNIT};
@@ -23,7 +24,7 @@ pub(crate) struct DiscNeighbourLists {
     /// is therefore a valid number, as a list never holds all discs.
     rows: AlignedColumn<u32>,
     stride: usize,
-    cells: RegistrationCells,
+    cells: RegistrationGrids,
 }
 
 /// Radii of the discs.
@@ -63,17 +64,16 @@ pub(crate) fn displacement_limit(
 }
 
 impl DiscNeighbourLists {
-    /// Creates lists without discs, with space for about `most` discs each; `largest` is the largest radius (length). Rows have at least
+    /// Creates lists without discs, with space for about `most` discs each, for discs of some classes of sizes. Rows have at least
     /// `stride` entries, a multiple of [`ROW_UNIT`]; the count is among them.
     pub(super) fn new(
         domain: Domain,
         count: usize,
         displacement_limit: f64,
-        largest: f64,
+        classes: &[SizeClass],
         most: f64,
         stride: usize,
     ) -> DiscNeighbourLists {
-        let sight = 2.0 * (largest + displacement_limit) * (1.0 + 1e-9);
         let least = ((most / FILLED) as usize + 1).next_multiple_of(ROW_UNIT);
         DiscNeighbourLists {
             domain,
@@ -81,7 +81,7 @@ impl DiscNeighbourLists {
             positions: AlignedColumn::filled(10, [0.0; 2], count),
             rows: empty_rows(count, stride.max(least)),
             stride: stride.max(least),
-            cells: RegistrationCells::new(&domain, count, sight),
+            cells: RegistrationGrids::new(&domain, classes, displacement_limit),
         }
     }
 
@@ -125,8 +125,8 @@ impl DiscNeighbourLists {
 
     /// Prefetches the cache lines that the renewal of a list at a position reads.
     #[inline(always)]
-    pub(super) fn prefetch_cells(&self, position: [f64; 2]) {
-        self.cells.prefetch(&self.domain, position);
+    pub(super) fn prefetch_cells(&self, position: [f64; 2], radius: f64) {
+        self.cells.prefetch(&self.domain, position, radius);
     }
 
     /// Registers unregistered discs, in their order, at `positions` inside the box (length). Each disc lists those registered before it,
@@ -155,7 +155,7 @@ impl DiscNeighbourLists {
         position: [f64; 2],
         radii: Radii<'_>,
     ) -> Result<(), u32> {
-        self.cells.remove(&self.domain, disc, self.positions[disc as usize]);
+        self.cells.remove(&self.domain, disc, (self.positions[disc as usize], radii.of(disc)));
         let begin = disc as usize * self.stride;
         for entry in 0..self.rows[begin + self.stride - 1] as usize {
             let other = self.rows[begin + entry];
@@ -175,23 +175,24 @@ impl DiscNeighbourLists {
     ) -> Result<(), u32> {
         self.positions[disc as usize] = position;
         let mut found = [0; FOUND];
+        let own = (position, radii.of(disc));
         let count = if self.cells.is_approximate() || radii.equal.is_none() {
-            let reach = radii.of(disc) + 2.0 * self.displacement_limit;
+            let reach = own.1 + 2.0 * self.displacement_limit;
             let is_near = |other: u32| {
                 let [dx, dy] = self.domain.displacement(position, self.positions[other as usize]);
                 let reach = (reach + radii.of(other)) * (1.0 + 1e-9);
                 dx * dx + dy * dy < reach * reach
             };
-            self.cells.find(registers, &self.domain, position, is_near, &mut found)
+            self.cells.find(registers, &self.domain, own, is_near, &mut found)
         } else {
-            self.cells.find(registers, &self.domain, position, |_| true, &mut found)
+            self.cells.find(registers, &self.domain, own, |_| true, &mut found)
         };
         let count = count.ok_or(disc)?;
         for &other in &found[..count] {
             self.add(disc, other)?;
             self.add(other, disc)?;
         }
-        self.cells.add(&self.domain, disc, position);
+        self.cells.add(&self.domain, disc, own);
         Ok(())
     }
 
@@ -255,9 +256,13 @@ mod tests {
         let planar = |periodic| Domain::planar([-3.0, 2.0], [30.0, 25.0], periodic);
         let registers = Scalar::<f32>::default();
         let mut pairs = 0;
-        for domain in [open, planar([true, true]), planar([true, false])] {
+        let domains = [open, planar([true, true]), planar([true, false])];
+        // One class of sizes, and four.
+        let cases = domains.into_iter().flat_map(|domain| [(domain, 0.3), (domain, 0.04)]);
+        for (domain, smallest) in cases {
             let count = 150;
-            let radii: Vec<f64> = (0..count).map(|_| stream.random_range(0.3..0.5)).collect();
+            let radii: Vec<f64> = (0..count).map(|_| stream.random_range(smallest..0.5)).collect();
+            let classes = SizeClass::of(radii.iter().copied());
             let discs: Vec<FlyingDisc> = radii.iter().map(|&radius| disc(radius)).collect();
             let radii_of_discs = Radii { equal: None, discs: &discs };
             let displacement_limit = displacement_limit(&domain, radii.iter().copied(), 6.0).unwrap();
@@ -270,7 +275,7 @@ mod tests {
             for position in &mut positions[..20] {
                 *position = [0, 1].map(|axis| domain.origin[axis] + 0.3 + 0.01 * position[axis]);
             }
-            let mut lists = DiscNeighbourLists::new(domain, count, displacement_limit, 0.5, 6.0, 64);
+            let mut lists = DiscNeighbourLists::new(domain, count, displacement_limit, &classes, 6.0, 64);
             lists.begin(registers, positions.iter().copied(), radii_of_discs).unwrap();
             for moved in 0..400 {
                 let disc = moved % count;

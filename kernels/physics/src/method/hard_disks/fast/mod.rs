@@ -31,6 +31,7 @@
 
 mod cells;
 mod checkpoint;
+mod grids;
 mod leaving;
 mod lists;
 mod prefetch;
@@ -43,6 +44,7 @@ use crate::method::hard_disks::engine::{
 };
 use crate::method::hard_disks::event::Arena;
 use crate::method::hard_disks::operations::Operations;
+use grids::SizeClass;
 use leaving::{free_path, leaving_time};
 use lists::{DiscNeighbourLists, Radii};
 use queue::EventQueue;
@@ -95,6 +97,7 @@ pub(crate) struct Fast {
     lists: DiscNeighbourLists,
     displacement_limit: f64,
     largest: f64,
+    classes: Vec<SizeClass>,
     /// True if all radii are equal.
     alike: bool,
     /// Mean free path (length).
@@ -122,7 +125,8 @@ impl Fast {
             displacement_limit(&arena, discs.iter().map(|disc| disc.radius)).unwrap_or(0.1 * largest);
         let alike = discs.iter().all(|disc| disc.radius == largest);
         Fast {
-            lists: DiscNeighbourLists::new(arena.domain, 0, displacement_limit, largest, LISTED, 0),
+            lists: DiscNeighbourLists::new(arena.domain, 0, displacement_limit, &[], LISTED, 0),
+            classes: SizeClass::of(discs.iter().map(|disc| disc.radius)),
             arena,
             set,
             discs: AlignedColumn::new(0, discs),
@@ -145,8 +149,9 @@ impl Fast {
 
     /// Creates lists for `count` discs, with rows of at least `stride` entries.
     fn lists_of(&self, count: usize, stride: usize) -> DiscNeighbourLists {
-        let Fast { arena, displacement_limit, largest, .. } = *self;
-        DiscNeighbourLists::new(arena.domain, count, displacement_limit, largest, LISTED, stride)
+        // Lists without discs take no memory.
+        let classes = if count == 0 { &[] } else { self.classes.as_slice() };
+        DiscNeighbourLists::new(self.arena.domain, count, self.displacement_limit, classes, LISTED, stride)
     }
 
     /// Sorts the discs by position at a time, registers all, and predicts the next event of each.

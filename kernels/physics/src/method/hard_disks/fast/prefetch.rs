@@ -20,7 +20,8 @@ impl Fast {
         }
         if let Some((time, disc)) = queue.upcoming(AHEAD[1]) {
             if partners[disc as usize].with == RENEWAL {
-                lists.prefetch_cells(self.registered(&discs[disc as usize], time));
+                let disc = &discs[disc as usize];
+                lists.prefetch_cells(self.registered(disc, time), disc.radius);
             }
             let with = partners[disc as usize].with as usize;
             lists.prefetch(with);
