@@ -260,6 +260,39 @@ fn lattices_reject_foreign_codes_and_records() {
     assert!(refused(&of_wide, 1));
 }
 
+/// One disc in twenty is ten times as large. Listed pairs are within the sum of their own radii and the skin; found ones touch.
+#[test]
+fn wide_sizes_are_listed_by_their_own_radii() {
+    let (sides, skin) = ([40.0, 31.0], 0.2);
+    let radius = |disc: usize| if disc.is_multiple_of(20) { 1.0 } else { 0.1 };
+    let of = scattered(sides, [true, false], 2.0, skin, 2000, 13);
+    let mut discs = StateRecords::<f64>::zeros(0, 2000, [true; 2], 1.0);
+    for (axis, column) in of.places.iter().enumerate() {
+        discs.fill(RecordEntry::of(axis, 0), |disc| column[disc]);
+    }
+    discs.fill(RecordEntry::Radius, |disc| if disc < 2000 { radius(disc) } else { 0.0 });
+    let list = VerletList::new(&of.sectors, &discs, skin);
+    let all = naive(&of.positions, sides, [true, false], 2.0 + skin);
+    let within = |margin: f64| {
+        let near = |[a, b]: [u32; 2], [x, y]: [f64; 2]| {
+            x.hypot(y) < radius(a as usize) + radius(b as usize) + margin
+        };
+        all.iter().filter(|(pair, to)| near(**pair, **to)).map(|(pair, _)| *pair).collect::<Vec<_>>()
+    };
+    assert_eq!(list.entries(), within(skin).len());
+    assert!(all.len() > 5 * list.entries());
+    let (mut cursor, mut found) = (SearchCursor::at(0), PairBuffer::<f64>::default());
+    let (rows, mut pairs) = (Finder::<f64, f64>::rows(&list).count, vec![]);
+    while cursor.row() < rows {
+        list.find(&discs, 0..rows, &mut cursor, &mut found, InstructionSet::best()).unwrap();
+        let all = Finder::<f64, f64>::pairs(&list, &found);
+        pairs.extend((0..all.count()).map(|number| all.pair(number).0).map(|[a, b]| [a.min(b), a.max(b)]));
+    }
+    pairs.sort_unstable();
+    assert_eq!(pairs, within(0.0));
+    assert!(pairs.len() > 100, "{}", pairs.len());
+}
+
 /// Threads share the construction of lists; the result does not depend on their number.
 #[test]
 fn verlet_lists_do_not_depend_on_threads() {

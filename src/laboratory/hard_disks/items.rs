@@ -2,7 +2,7 @@
 
 use super::study::{
     atmosphere, cells, collapse, complexity, cooling, crossing, errors, fluid, lifetimes, masks, precision,
-    rates, soft_hard, structure, unequal,
+    pressures, rates, soft_hard, structure, unequal,
 };
 use crate::results::Item;
 
@@ -22,5 +22,6 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("hard-disks-precision", precision::reproduce),
     Item::of("hard-disks-atmosphere", atmosphere::reproduce),
     Item::of("hard-disks-errors", errors::reproduce),
+    Item::of("hard-disks-pressures", pressures::reproduce),
     Item::of("soft-hard", soft_hard::reproduce),
 ];

@@ -3,7 +3,7 @@
 use super::finder::{AT_ONCE, MARGIN, SearchCursor};
 use super::grid::CellGrid;
 use super::pairs::{CandidatePair, DiscPair, PairBuffer, cell_offset};
-use super::records::{RecordPositions, StateRecords};
+use super::records::{RecordEntry, RecordPositions, StateRecords};
 use crate::backend::Precision;
 use crate::isa::Element;
 use std::ops::Range;
@@ -13,11 +13,13 @@ pub(super) struct DistanceFilter<'a, S> {
     positions: RecordPositions<'a, S>,
     cell_offsets: [[f64; 2]; 5],
     limit: f64,
+    /// Records with the radii, if pairs are near at the sum of their own.
+    radii: Option<&'a StateRecords<S>>,
     touches: &'a mut Vec<CandidatePair>,
 }
 
 impl<'a, S: Element> DistanceFilter<'a, S> {
-    /// Filter for `count` discs that touch at most at a distance `reach` (length).
+    /// Filter for `count` discs that touch at most at a distance `reach` (length), or at the sum of their radii if that is asked.
     ///
     /// # Panics
     /// If there is another number of records.
@@ -26,7 +28,7 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         discs: &'a StateRecords<S>,
         count: usize,
         grid: &CellGrid,
-        reach: f64,
+        (reach, by_radii): (f64, bool),
         touches: &'a mut PairBuffer<P>,
     ) -> Self {
         assert_eq!(discs.discs(), count, "the search and the records must have the same discs");
@@ -34,7 +36,14 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         touches.pairs.clear();
         touches.cell_offsets.clear();
         touches.cell_offsets.extend(cell_offsets.map(cell_offset));
-        DistanceFilter { positions: discs.positions(), cell_offsets, limit, touches: &mut touches.pairs }
+        let radii = by_radii.then_some(discs);
+        DistanceFilter {
+            positions: discs.positions(),
+            cell_offsets,
+            limit,
+            radii,
+            touches: &mut touches.pairs,
+        }
     }
 
     /// Searches rows piece by piece (`pieces` of a row) until enough pairs are listed.
@@ -69,16 +78,23 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         unsafe { self.positions.of(disc) }
     }
 
-    /// True if two positions with a cell offset are near enough.
+    /// True if two discs at positions with a cell offset are near enough.
     ///
     /// # Safety
     /// `cell_offset` is below 5.
     #[inline(always)]
-    unsafe fn is_near(&self, [here, there]: [[f64; 2]; 2], cell_offset: usize) -> bool {
+    unsafe fn is_near(&self, discs: DiscPair, [here, there]: [[f64; 2]; 2], cell_offset: usize) -> bool {
         // SAFETY: the caller promises a cell offset below 5, the length of `cell_offsets`.
         let along = unsafe { *self.cell_offsets.get_unchecked(cell_offset) };
         let (dx, dy) = ((here[0] - there[0]) - along[0], (here[1] - there[1]) - along[1]);
-        dx * dx + dy * dy < self.limit
+        let limit = match self.radii {
+            Some(records) => {
+                let [a, b] = discs.map(|disc| records.get(RecordEntry::Radius, disc as usize).to_f64());
+                (a + b) * (a + b) * MARGIN
+            }
+            None => self.limit,
+        };
+        dx * dx + dy * dy < limit
     }
 
     /// Lists those of some pairs, given with the numbers of their cell offsets, that are near enough. The number of listed pairs stays in a register,
@@ -92,7 +108,8 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
         let (to, mut length) = (self.touches.as_mut_ptr(), self.touches.len());
         for (discs, cell_offset) in pairs {
             // SAFETY: the caller promises discs, and a cell offset below 5.
-            let is_near = unsafe { self.is_near(discs.map(|disc| self.disc_position(disc)), cell_offset) };
+            let is_near =
+                unsafe { self.is_near(discs, discs.map(|disc| self.disc_position(disc)), cell_offset) };
             // SAFETY: `reserve` has left capacity for all pairs.
             unsafe { to.add(length).write(CandidatePair { discs, cell_offset: cell_offset as u32 }) };
             length += usize::from(is_near);
@@ -108,7 +125,7 @@ impl<'a, S: Element> DistanceFilter<'a, S> {
     #[inline(always)]
     pub(super) unsafe fn list_if_near(&mut self, first: u32, at: [f64; 2], second: u32, cell_offset: usize) {
         // SAFETY: the caller promises that `second` is a disc, and a cell offset below 5.
-        let is_near = unsafe { self.is_near([at, self.disc_position(second)], cell_offset) };
+        let is_near = unsafe { self.is_near([first, second], [at, self.disc_position(second)], cell_offset) };
         let length = self.touches.len();
         if length == self.touches.capacity() {
             self.touches.reserve(AT_ONCE);

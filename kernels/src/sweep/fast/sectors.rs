@@ -315,7 +315,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
         found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = DistanceFilter::new(discs, self.sector.len(), &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(discs, self.sector.len(), &self.grid, (self.reach, false), found);
         near.search(
             rows,
             cursor,
@@ -348,7 +348,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for Sectors {
     }
 
     fn find_part(&self, discs: &StateRecords<S>, part: Range<usize>, found: &mut PairBuffer<P>) {
-        let mut near = DistanceFilter::new(discs, self.sector.len(), &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(discs, self.sector.len(), &self.grid, (self.reach, false), found);
         let (mut last, mut at) = (NOWHERE, [0.0; 2]);
         self.pairs_of_members(part, |first, second, cell_offset| {
             // SAFETY: `pairs_of_members` gives members of sectors, which are discs, and numbers of cell offsets below 5.

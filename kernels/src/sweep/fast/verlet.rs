@@ -19,7 +19,7 @@ use super::finder::{Finder, RowLayout, SearchCursor};
 use super::grid::CellGrid;
 use super::near::DistanceFilter;
 use super::pairs::{DiscPair, PairBuffer, PairSequence};
-use super::records::StateRecords;
+use super::records::{RecordEntry, StateRecords};
 use super::sectors::Sectors;
 use crate::InstructionSet;
 use crate::backend::Precision;
@@ -33,16 +33,22 @@ const DISC: u32 = 29;
 /// Pairs compared between two checks whether enough are found.
 const SOME: usize = 16;
 
+/// Ratio of the smallest radius to the largest one below which pairs are listed by their own radii.
+const WIDE: f64 = 0.7;
+
 /// Rows of sectors whose lists one thread builds in one piece.
 const ROWS: usize = 8;
 
-/// Every pair nearer than contact distance plus skin, once, with the disc that comes first in the order of the sectors.
+/// Every pair nearer than contact distance plus skin, once, with the disc that comes first in the order of the sectors. Contact is at
+/// the largest diameter, or at the sum of the own radii if these differ widely.
 ///
 /// Positions stay relative to the sectors in which the discs were when the lists were built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerletList {
     grid: CellGrid,
     reach: f64,
+    /// True if radii differ so much that each pair is listed, and taken for near, by the sum of its own.
+    by_radii: bool,
     discs: usize,
     /// Index in `pairs` of the first pair of each row of sectors, and the end.
     rows: Vec<u32>,
@@ -73,6 +79,18 @@ impl VerletList {
             "sectors too narrow for the reach and the skin"
         );
         let at = |disc: u32| discs.position(disc as usize);
+        let radius = |disc: u32| discs.get(RecordEntry::Radius, disc as usize).to_f64();
+        let by_radii = discs.has(RecordEntry::Radius) && {
+            let radii = (0..sectors.disc_count() as u32).map(radius);
+            let [low, high] =
+                radii.fold([f64::INFINITY, 0.0_f64], |[low, high], it| [low.min(it), high.max(it)]);
+            // A law that reaches beyond contact lists all pairs within its reach.
+            low < WIDE * high && reach <= 2.0 * high * (1.0 + 1e-6)
+        };
+        let limit_of = |disc: u32, partner: u32| match by_radii {
+            true => (1.0 + 1e-9) * (radius(disc) + radius(partner) + skin).powi(2),
+            false => limit,
+        };
         let discs = sectors.disc_count();
         let cell_offsets = grid.cell_offsets();
         let part = |rows: Range<usize>| {
@@ -82,7 +100,7 @@ impl VerletList {
                 sectors.pairs_of_row(row, 0..grid.counts[0], |disc, partner, cell_offset| {
                     let (here, there) = (at(disc), at(partner));
                     let along = |axis: usize| (here[axis] - there[axis]) - cell_offsets[cell_offset][axis];
-                    if along(0) * along(0) + along(1) * along(1) < limit {
+                    if along(0) * along(0) + along(1) * along(1) < limit_of(disc, partner) {
                         part.pairs.push([disc, partner | (cell_offset as u32) << DISC]);
                     }
                 });
@@ -91,8 +109,14 @@ impl VerletList {
         };
         let parts = on_threads(pieces(0..grid.counts[1], ROWS), part);
         let all = parts.iter().map(|part| part.pairs.len()).sum::<usize>();
-        let mut list =
-            VerletList { grid, reach, discs, rows: vec![0; grid.counts[1] + 1], pairs: vec![[0; 2]; all] };
+        let mut list = VerletList {
+            grid,
+            reach,
+            by_radii,
+            discs,
+            rows: vec![0; grid.counts[1] + 1],
+            pairs: vec![[0; 2]; all],
+        };
         list.rows[grid.counts[1]] = all as u32;
         list.join(parts);
         list
@@ -153,7 +177,7 @@ unsafe impl<S: Element, P: Precision> Finder<S, P> for VerletList {
         found: &mut PairBuffer<P>,
         _: InstructionSet,
     ) -> Result<(), ProgramError> {
-        let mut near = DistanceFilter::new(discs, self.discs, &self.grid, self.reach, found);
+        let mut near = DistanceFilter::new(discs, self.discs, &self.grid, (self.reach, self.by_radii), found);
         let pairs_of = |row: usize| self.rows[row] as usize..self.rows[row + 1] as usize;
         near.search(
             rows,

@@ -11,6 +11,7 @@ pub(crate) mod fluid;
 pub(crate) mod lifetimes;
 pub(crate) mod masks;
 pub(crate) mod precision;
+pub(crate) mod pressures;
 pub(crate) mod rates;
 pub(crate) mod soft_hard;
 pub(crate) mod structure;

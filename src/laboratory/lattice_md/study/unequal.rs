@@ -88,7 +88,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         let [contacts, lists] = [0.0, SKIN * ratio * SMALL].map(near);
         running.advance_steps(1)?;
         let listed = summary_number(&running.simulation.summary(), "listed_pairs")? / discs as f64;
-        Ok((ratio, contacts, listed, lists.within_own))
+        Ok((ratio, contacts, listed, lists.within_largest))
     });
     let pairs = pairs.collect::<Result<Vec<_>, CommandFailure>>()?;
     // Name and seconds of the fastest search of the fast engine at a ratio, among those whose names begin with some words.
@@ -134,7 +134,7 @@ pub(crate) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
             .number("one grid", 1, |(_, contacts, ..)| contacts.one_grid)
             .number("a grid for each size", 1, |(_, contacts, ..)| contacts.grid_of_each_size)
             .number("listed", 1, |(_, _, listed, _)| *listed)
-            .number("within reach of their own radii", 1, |(.., own)| *own)
+            .number("within the largest contact", 1, |(.., largest)| *largest)
             .frame("pairs", "Pairs for each disc that a search compares or lists"),
     ])
     .with_seeds([1]))

@@ -1,7 +1,7 @@
 //! Grids of the registered positions, one for each class of sizes.
 //!
 //! Cells as wide as the largest discs reach hold many small ones: with radii of 1:10 a single grid compares a disc with 220 others. Discs of a
-//! class differ by less than a factor of two in size. A disc looks for its equals and for larger ones in their cells, next to its own, and for smaller ones in
+//! class differ by less than a factor of three in size. A disc looks for its equals and for larger ones in their cells, next to its own, and for smaller ones in
 //! all cells that it reaches.
 
 use super::cells::{FOUND, RegistrationCells};
@@ -9,7 +9,7 @@ use crate::domain::Domain;
 use stripmine_kernels::backend::Registers;
 
 /// Ratio of the sizes in a class.
-const CLASS_RATIO: f64 = 2.0;
+const CLASS_RATIO: f64 = 3.0;
 /// Discs of a small class for each area of a squared range of sight, at least: fewer would leave most cells empty.
 const LEAST_FILLED: f64 = 1.5;
 
@@ -129,11 +129,11 @@ mod tests {
     use stripmine_kernels::backend::Scalar;
     use stripmine_kernels::noise::{RandomPurpose, Stream};
 
-    /// By hand: 4 and 2.1 are one class, 2 and 1.5 the next, 0.9 the last.
+    /// By hand: 4 to 1.5 are one class, 0.9 to 0.4 the next, 0.2 the last.
     #[test]
-    fn classes_span_a_factor_of_two() {
-        let classes = SizeClass::of([1.5, 4.0, 0.9, 2.0, 2.1, 4.0].into_iter());
-        let expected = [(4.0, 3), (2.0, 2), (0.9, 1)];
+    fn classes_span_a_factor_of_three() {
+        let classes = SizeClass::of([1.5, 4.0, 0.9, 0.2, 0.4, 4.0].into_iter());
+        let expected = [(4.0, 3), (0.9, 2), (0.2, 1)];
         assert_eq!(classes, expected.map(|(largest, count)| SizeClass { largest, count }));
         assert_eq!(SizeClass::of([].into_iter()), []);
     }
