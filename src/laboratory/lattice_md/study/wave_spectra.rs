@@ -212,6 +212,9 @@ fn frames(waves: &[WaveRun]) -> [ResultFrame; 5] {
         FrameBuilder::of(0..waves[0].spectrum.len())
             .number("frequency", 3, |at| waves[0].frequency(*at))
             .mean("power", 4, |&at| over(&|it| it.spectrum[at]))
+            .number("power of experiments", 4, |&at| {
+                over(&|it| it.spectrum[0] * (it.frequency(at) / it.frequency(0)).powf(EXPERIMENT)).value
+            })
             .frame("spectrum", "Power spectrum of the grains in a bin of five mean radii"),
         FrameBuilder::of([()])
             .number("largest share of a wavelength", 3, |()| {
