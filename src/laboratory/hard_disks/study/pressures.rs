@@ -26,7 +26,7 @@ const SMALL: [[f64; 3]; 10] = [
     [0.710, 9.064_69, 0.000_43],
     [0.718, 9.050_7, 0.004_0],
 ];
-/// The same for 512² discs, between fluid and crystal.
+/// Packing fraction, βp(2σ)² and its standard error of 512² discs, between fluid and crystal.
 const LARGE: [[f64; 3]; 4] = [
     [0.698, 9.169_588, 0.000_091],
     [0.700, 9.186_40, 0.000_47],
