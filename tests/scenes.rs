@@ -128,7 +128,7 @@ fn cells_of_the_paper_can_be_set() {
 }
 
 /// Keys that no preset and no scene of the gallery sets, each with its purpose.
-const NOT_SHOWN: [(&str, &str); 35] = [
+const NOT_SHOWN: [(&str, &str); 36] = [
     ("integrator.damping", "the friction of the paper's integrator, which the item of energies varies"),
     ("integrator.on_long_step", "a run continues with rare too-fast discs, which thermo.csv counts"),
     ("law.contact_arm", "contacts as in LAMMPS, for comparison"),
@@ -158,6 +158,7 @@ const NOT_SHOWN: [(&str, &str); 35] = [
     ("run.most_lost", "losses as in the paper, which the item of losses counts"),
     ("run.until", "a run that ends at a target error"),
     ("search.cell_edge", "cells of the paper, which studies of searches compare"),
+    ("search.discs_in_cell", "linked cells of ISO99's rival, whose size a study compares"),
     ("search.mask", "masks of the papers, which the item of masks compares"),
     ("search.on_conflict", "cells that hold several discs"),
     ("search.rebuild", "lists by all pairs, as in the paper"),
