@@ -31,7 +31,7 @@ import tempfile
 
 from edmd_planar import Changed, planar
 from environment import Unavailable, said
-from provenance import git, is_traceable
+from provenance import git, refusal
 from report import contest, result, same, shown, write
 
 SOURCE = "https://github.com/FSmallenburg/EDMD"
@@ -197,13 +197,9 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
     asked.rounds = asked.rounds or (2 if asked.quick else 3)
-    if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
-        print("  help: commit them and build again, or choose another --out", file=sys.stderr)
-        return 2
-    if not pathlib.Path(asked.stripmine).exists():
-        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
-        return 0
+    refused = refusal(asked.out, asked.stripmine)
+    if refused is not None:
+        return refused
     if hasattr(os, "sched_setaffinity"):
         # Child processes inherit the core.
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0)) if asked.core is None else asked.core})

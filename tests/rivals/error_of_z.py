@@ -23,7 +23,7 @@ import tempfile
 
 from edmd import Edmd, Setting, checkout, run
 from environment import Unavailable
-from provenance import is_traceable, write
+from provenance import refusal, write
 
 COLUMNS, ROWS = 29, 30
 PACKING_FRACTIONS = [0.5, 0.7, 0.72]
@@ -148,12 +148,9 @@ def main():
     parser.add_argument("--stripmine", type=pathlib.Path, default=pathlib.Path("target/release/stripmine"))
     parser.add_argument("--out", type=pathlib.Path, help="folder for errors.json")
     asked = parser.parse_args()
-    if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
-        return 2
-    if not asked.stripmine.exists():
-        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
-        return 0
+    refused = refusal(asked.out, asked.stripmine)
+    if refused is not None:
+        return refused
     if hasattr(os, "sched_setaffinity"):
         # Child processes inherit the core.
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})

@@ -15,7 +15,7 @@ import statistics
 import subprocess
 import sys
 
-from provenance import is_traceable, provenance, write
+from provenance import provenance, refusal, write
 
 # Packing fractions, discs, collisions of a run, runs, and start.
 # So many discs that the share 1/N of pairs that a disc makes with itself is below the error.
@@ -97,12 +97,9 @@ def main():
     parser.add_argument("--stripmine", type=pathlib.Path, default=pathlib.Path("target/release/stripmine"))
     parser.add_argument("--out", type=pathlib.Path, help="folder for pressures.json")
     asked = parser.parse_args()
-    if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
-        return 2
-    if not asked.stripmine.exists():
-        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
-        return 0
+    refused = refusal(asked.out, asked.stripmine)
+    if refused is not None:
+        return refused
     # The commit is that of the start.
     provenance()
     states = [(nu, count, int(events * asked.share), runs, start) for nu, count, events, runs, start in DILUTE + DENSE + MELTING]

@@ -32,7 +32,7 @@ import tempfile
 
 from contest import IN_LAMMPS, Contest, Refused, run
 from environment import Unavailable, environment
-from provenance import is_traceable
+from provenance import refusal
 from report import contest, result, same, shown, write
 
 PACKING_FRACTIONS = [0.84, 0.80, 0.6, 0.3, 0.1, 0.03]
@@ -76,13 +76,9 @@ def of_the_report(held, build):
 
 def main():
     asked = arguments()
-    if asked.out and not is_traceable(asked.out):
-        print(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
-        print("  help: commit them and build again, or choose another --out", file=sys.stderr)
-        return 2
-    if not pathlib.Path(asked.stripmine).exists():
-        print(f"skipped: {asked.stripmine} does not exist: cargo build --release")
-        return 0
+    refused = refusal(asked.out, asked.stripmine)
+    if refused is not None:
+        return refused
     try:
         python, variables = environment(asked.python)
     except Unavailable as why:

@@ -19,7 +19,7 @@ import subprocess
 import tempfile
 
 from environment import Unavailable, environment, said
-from provenance import is_traceable
+from provenance import refusal
 from report import contest, result, same, shown, write
 
 BUILD = pathlib.Path(__file__).with_name("in_lammps.py")
@@ -42,8 +42,9 @@ def main():
     parser.add_argument("--python", help="a Python that has LAMMPS")
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
-    if asked.out and not is_traceable(asked.out):
-        raise SystemExit(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes")
+    refused = refusal(asked.out, asked.stripmine)
+    if refused is not None:
+        raise SystemExit(refused)
     try:
         python, variables = environment(asked.python)
     except Unavailable as error:

@@ -19,7 +19,7 @@ import sys
 import tempfile
 
 from environment import said
-from provenance import is_traceable
+from provenance import refusal
 from report import contest, result, shown, write
 
 CRATE = pathlib.Path(__file__).with_name("particular")
@@ -66,8 +66,9 @@ def main():
     parser.add_argument("--stripmine", default="target/release/stripmine")
     parser.add_argument("--out", type=pathlib.Path, help="folder for contests.json")
     asked = parser.parse_args()
-    if asked.out and not is_traceable(asked.out):
-        sys.exit(f"error: the results in {asked.out} are committed, but this checkout has uncommitted changes")
+    refused = refusal(asked.out, asked.stripmine)
+    if refused is not None:
+        raise SystemExit(refused)
     try:
         rival = built()
     except OSError as why:

@@ -29,6 +29,18 @@ def is_traceable(out):
     return not (changed and git(out, "ls-files", "--", "."))
 
 
+def refusal(out, program):
+    """Exit code of a script that may not write its results to a folder, or lacks the program; else none. The reason is printed."""
+    if out and not is_traceable(out):
+        print(f"error: the results in {out} are committed, but this checkout has uncommitted changes", file=sys.stderr)
+        print("  help: commit them and build again, or choose another --out", file=sys.stderr)
+        return 2
+    if not pathlib.Path(program).exists():
+        print(f"skipped: {program} does not exist: cargo build --release")
+        return 0
+    return None
+
+
 @functools.cache
 def provenance():
     """Provenance of results: the commit of this checkout before any result is written, the whole command line, the processor."""
