@@ -19,6 +19,7 @@ const SCENES: &[(&str, &[&str])] = &[
     ("dense-gas", &["search.by=neighbor-list", "search.rebuild=all-pairs", "particles.count=20"]),
     ("hard-disks", &["particles.count=24"]),
     ("hard-disks", &["particles.count=24", "machine.engine=reference"]),
+    ("hard-disks", &["particles.count=200", "machine.engine=cell-crossing"]),
     ("langevin-dense", &["particles.count=24", "search.by=sectors"]),
     ("langevin-dense", &["particles.count=24", "search.by=neighbor-list"]),
     ("langevin-free", &["particles.count=24"]),

@@ -2,7 +2,7 @@
 
 use super::event::Arena;
 use crate::domain::BoxSide;
-use crate::method::Clock;
+use crate::method::{Clock, Snapshot};
 use crate::near::NeighbourSearch;
 use crate::particles::{Particle, Particles};
 use stripmine_kernels::flight::FlyingDisc;
@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-6;
 const MOST_ENERGY: f64 = 1e4;
 
 /// Checks that discs are inside the box, do not overlap, are not ahead of the clock, and have no more energy than the scene can give.
-/// `energy_at_start` is the [`available_energy`] (energy).
+/// `energy_at_start` is the [`available_energy`] (energy). The time of the engine (`engine.time`) lies between the local times and the clock.
 ///
 /// # Errors
 /// A message that names the first violation.
@@ -22,12 +22,19 @@ pub(super) fn check_restored_discs(
     energy_at_start: f64,
     discs: &[FlyingDisc],
     clock: &Clock,
+    snapshot: &Snapshot,
 ) -> Result<(), String> {
     let now = clock.time;
     if let Some(disc) = discs.iter().find(|disc| !(0.0..=now).contains(&disc.time)) {
         return Err(format!(
             "the local time of a disc is {:?}, outside the range from 0 to the clock's {now:?}",
             disc.time
+        ));
+    }
+    let engine = snapshot.sum("engine.time")?;
+    if engine > now || discs.iter().any(|disc| disc.time > engine) {
+        return Err(format!(
+            "the time of the engine is {engine:?}, before the local time of a disc or after the clock's {now:?}"
         ));
     }
     let places: Vec<[f64; 2]> = discs.iter().map(|disc| arena.position_at(disc, now)).collect();

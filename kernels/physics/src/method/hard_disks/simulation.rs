@@ -377,7 +377,7 @@ impl Simulation for HardDiskSimulation {
         }
         let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
-        check_restored_discs(&self.arena, self.available_energy, &discs, &clock)?;
+        check_restored_discs(&self.arena, self.available_energy, &discs, &clock, &snapshot)?;
         self.totals = CollisionTotals::totals_from_snapshot(&snapshot, clock.events)?;
         self.row = IntervalMark::mark_from_snapshot(&snapshot, &self.totals)?;
         self.watch.restore(&snapshot)?;

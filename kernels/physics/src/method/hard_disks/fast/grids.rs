@@ -49,10 +49,11 @@ pub(super) struct RegistrationGrids {
 impl RegistrationGrids {
     /// Creates empty grids for discs that move by a displacement limit (length).
     pub(super) fn new(domain: &Domain, classes: &[SizeClass], displacement_limit: f64) -> RegistrationGrids {
-        let area = domain.area();
+        // Within half a period a disc is found once.
+        let (area, widest) = (domain.area(), 0.49 * domain.shortest_period());
         let grid = |class: &SizeClass| {
             let sight = 2.0 * (class.largest + displacement_limit) * (1.0 + 1e-9);
-            let filled = (LEAST_FILLED * area / class.count as f64).sqrt();
+            let filled = (LEAST_FILLED * area / class.count as f64).sqrt().min(widest);
             let sight = if classes.len() > 1 && area.is_finite() { sight.max(filled) } else { sight };
             (class.largest, RegistrationCells::new(domain, class.count, sight))
         };
@@ -142,9 +143,11 @@ mod tests {
     #[test]
     fn grids_match_a_search_over_pairs() {
         let mut stream = Stream::new(12, RandomPurpose::Test, 0);
-        for periodic in [[true, true], [true, false]] {
+        for (periodic, large) in
+            [([true, true], 6), ([true, false], 6), ([true, true], 1), ([false, true], 2)]
+        {
             let domain = Domain::planar([-3.0, 2.0], [12.0, 9.0], periodic);
-            let radii = |disc: usize| if disc < 6 { 1.0 } else { 0.05 };
+            let radii = |disc: usize| if disc < large { 1.0 } else { 0.05 };
             let place =
                 |_| [0, 1].map(|axis| domain.origin[axis] + stream.random_range(0.0..domain.length(axis)));
             let places: Vec<[f64; 2]> = (0..2500).map(place).collect();

@@ -60,6 +60,9 @@ impl ExclusiveGridSize {
 
 /// Assignment of discs to cells. It holds until the next fill, unless discs cross their cells by events of their own.
 pub(crate) trait DiscCells: Send {
+    /// True if discs cross their cells by events of their own.
+    const HAS_CROSSINGS: bool = false;
+
     /// Assigns every disc, in the order of their numbers, to the cell of its position inside the box (length).
     ///
     /// # Errors

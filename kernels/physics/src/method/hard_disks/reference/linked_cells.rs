@@ -160,6 +160,8 @@ impl LinkedCells {
 }
 
 impl DiscCells for LinkedCells {
+    const HAS_CROSSINGS: bool = true;
+
     fn fill(&mut self, places: impl Iterator<Item = [f64; 2]>) -> Result<(), CellMisfit> {
         self.first.fill(NONE);
         self.next.clear();

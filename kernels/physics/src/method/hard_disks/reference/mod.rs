@@ -409,7 +409,9 @@ impl<C: DiscCells> EventEngine for TournamentEngine<C> {
             kept.add_sum(name, value);
         }
         kept.add_count("engine.remaps", remaps);
-        kept.add_count("engine.crossings", crossings);
+        if C::HAS_CROSSINGS {
+            kept.add_count("engine.crossings", crossings);
+        }
         kept
     }
 
@@ -420,9 +422,14 @@ impl<C: DiscCells> EventEngine for TournamentEngine<C> {
         self.cells.fill(places).map_err(|_| "two discs are in one cell")?;
         let [time, slack, since, fastest, filled] = SUMS.map(|name| kept.sum(name));
         (self.time, self.slack, self.since, self.fastest) = (time?, slack?, since?, fastest?);
+        if self.since > self.time || self.slack > self.whole_slack || self.fastest < 0.0 {
+            return Err("the state of the cells (engine.since, engine.slack, engine.fastest) is impossible"
+                .to_owned());
+        }
         (self.filled, self.remaps) = (filled?, kept.count("engine.remaps")?);
-        // Checkpoints of the version 0.2.0 have no crossings.
-        self.crossings = kept.count("engine.crossings").unwrap_or(0);
+        if C::HAS_CROSSINGS {
+            self.crossings = kept.count("engine.crossings")?;
+        }
         self.discs = discs;
         self.events = (0..count as u32).map(|disc| self.predicted_event(disc)).collect();
         self.begin_tournament();
@@ -431,7 +438,7 @@ impl<C: DiscCells> EventEngine for TournamentEngine<C> {
 
     fn figures(&self) -> Vec<(&'static str, f64)> {
         let mut figures = vec![("remaps", self.remaps as f64), self.cells.figure()];
-        if self.crossings > 0 {
+        if C::HAS_CROSSINGS {
             figures.push(("crossings", self.crossings as f64));
         }
         figures
