@@ -9,6 +9,7 @@
 //! | the command, from within a program | [`cli::run_with`] |
 //! | cost of a program on a vector machine | [`model::clock`], [`model::machines`] |
 //! | predict a run on this host | [`model::host`] |
+//! | count, list, time and price a program of your own | [`workbench::examine`] |
 //! | draw a chart | [`report::figure`] |
 //! | tables with units, and expressions over their cells | [`frame`] |
 //! | check claims against tables | [`claims`] |
@@ -87,6 +88,7 @@
 pub mod claims;
 pub mod cli;
 pub mod console;
+mod emission;
 pub mod frame;
 mod laboratory;
 pub mod model;
@@ -96,3 +98,4 @@ pub mod report;
 pub mod results;
 pub mod statistics;
 mod study;
+pub mod workbench;

@@ -9,6 +9,7 @@
 //! | task | entry point |
 //! |---|---|
 //! | write equations as a kernel, list it, run it | [`isa::Kernel`], [`Program`] |
+//! | write a kernel over arrays with names of your own, without `unsafe` | [`own::OwnKernel`] |
 //! | count its operations, by part of a step | [`isa::OpCounts`], [`ledger::Ledger`] |
 //! | evaluate pair laws | [`law`]; their sums over all pairs, lists, lattices, sectors: [`sweep`] |
 //! | run BP93's own program, line by line | [`printed`] |
@@ -91,6 +92,7 @@
 )]
 
 pub mod backend;
+pub mod emit;
 pub mod flight;
 pub mod integrator;
 pub mod isa;
@@ -98,6 +100,7 @@ pub mod law;
 pub mod ledger;
 pub mod mask;
 pub mod noise;
+pub mod own;
 pub mod printed;
 mod program;
 pub mod sweep;

@@ -4,6 +4,7 @@ use crate::backend::tape::Outlines;
 use crate::backend::{
     GROUP, InstructionSet, ListingLine, Precision, RegisterTask, Registers, Scalar, Strip, Tape, dispatch,
 };
+use crate::emit::{EmitError, EmittedKernel, GroupSize, emit};
 use crate::isa::{Footprint, Kernel, Memory, OpCounts, ProgramError, Storage};
 use crate::threads::{on_threads, pieces};
 use std::ops::Range;
@@ -41,6 +42,11 @@ impl<T: Kernel> Program<T> {
             "{} is written and read at a shift, so results would depend on the strip length",
             hazard.map_or("", |access| access.array.label()),
         );
+        Program { text, tape, footprint }
+    }
+
+    /// A kernel recorded as `tape`, of which all accesses are within `footprint`.
+    pub(crate) fn with_footprint(text: T, tape: Tape<T::Lane>, footprint: Footprint) -> Self {
         Program { text, tape, footprint }
     }
 
@@ -181,6 +187,12 @@ pub trait Runnable: Send + Sync {
 
     /// Outlines of the vector instructions and of the passes that execute them, for a timing model.
     fn outlines(&self) -> Outlines;
+
+    /// The kernel as a function of RISC-V vector code.
+    ///
+    /// # Errors
+    /// As [`emit`](crate::emit::emit).
+    fn emitted(&self, size: GroupSize) -> Result<EmittedKernel, EmitError>;
 }
 
 impl<T: Kernel + Send + Sync> Runnable for Program<T>
@@ -225,6 +237,10 @@ where
 
     fn outlines(&self) -> Outlines {
         self.tape.outlines()
+    }
+
+    fn emitted(&self, size: GroupSize) -> Result<EmittedKernel, EmitError> {
+        emit(&self.tape, size)
     }
 }
 

@@ -41,7 +41,7 @@ fn reads<L: Copy>(action: &TapeAction<L>) -> Vec<RegisterName> {
     let register = |operand: &Operand<L>| match operand {
         Operand::Register(name) => Some(*name),
         Operand::Uniform(_) => None,
-        Operand::Memory(there) => panic!("a tape has {there} as an operand"),
+        Operand::Memory(there) => panic!("a tape has {there:?} as an operand"),
     };
     let names: Vec<Option<RegisterName>> = match action {
         TapeAction::Number(_, number) => match number {

@@ -18,6 +18,7 @@ mod scene;
 mod scratch;
 mod simulation;
 mod table;
+mod tracing;
 
 use pyo3::prelude::*;
 
@@ -40,6 +41,8 @@ mod _stripmine {
     use crate::simulation::Simulation;
     #[pymodule_export]
     use crate::table::{_table, Table};
+    #[pymodule_export]
+    use crate::tracing::{_TracedProgram, _traced};
     use pyo3::prelude::*;
 
     #[pymodule_init]

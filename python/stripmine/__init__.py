@@ -32,12 +32,14 @@ from ._stripmine import (
     read,
     scene,
 )
+from ._tracing import Kernel, Vector, trace, where
 
 __all__ = [
     "BusyError",
     "Error",
     "Frame",
     "Frames",
+    "Kernel",
     "Mistake",
     "Particles",
     "Run",
@@ -47,6 +49,7 @@ __all__ = [
     "Simulation",
     "SimulationError",
     "Table",
+    "Vector",
     "__version__",
     "average",
     "keys",
@@ -54,6 +57,8 @@ __all__ = [
     "presets",
     "read",
     "scene",
+    "trace",
+    "where",
 ]
 
 _pickling.register()

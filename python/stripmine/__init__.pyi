@@ -4,7 +4,7 @@ Arrays are copies: writing to them changes no simulation. N is the number of par
 """
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, final
 
@@ -23,6 +23,7 @@ __all__ = [
     "Error",
     "Frame",
     "Frames",
+    "Kernel",
     "Mistake",
     "Particles",
     "Run",
@@ -32,6 +33,7 @@ __all__ = [
     "Simulation",
     "SimulationError",
     "Table",
+    "Vector",
     "__version__",
     "average",
     "keys",
@@ -39,6 +41,8 @@ __all__ = [
     "presets",
     "read",
     "scene",
+    "trace",
+    "where",
 ]
 
 __version__: str
@@ -74,6 +78,66 @@ def keys(method: str | None = None) -> list[dict[str, Any]]:
 
     Each has `section`, `key`, `type`, `unit`, `default`, `required`, `used_with` and `meaning`. Raises `ValueError` for an unknown method.
     """
+
+def trace(function: Callable[..., Vector | tuple[Vector, ...] | dict[str, Vector]]) -> Kernel:
+    """Traces a function of vectors: calls it once with symbols, and records its operations as a program of the vector machine.
+
+    `stripmine.trace(lambda x, y: (x * x + y * y).sqrt())`. Its parameters are the inputs; it returns a vector, a tuple or a dict of vectors.
+    Raises `Error` for a function that branches on data, or uses values that are neither numbers nor its arguments.
+    """
+
+def where(condition: Any, a: Vector | float, b: Vector | float) -> Vector:
+    """`a` where a comparison of traced vectors holds, else `b`."""
+
+class Vector:
+    """Numbers of a traced function. It has + - * /, comparisons, abs, whole powers, and numpy.sqrt of them."""
+
+    def sqrt(self) -> Vector:
+        """Square root."""
+
+    def trunc(self) -> Vector:
+        """Integer part, rounded towards zero."""
+
+    def minimum(self, other: Vector | float) -> Vector:
+        """The smaller of two; the second if one is NaN."""
+
+    def maximum(self, other: Vector | float) -> Vector:
+        """The larger of two; the second if one is NaN."""
+
+    def shift(self, distance: int) -> Vector:
+        """The elements of an input at a distance from the own ones."""
+
+class Kernel:
+    """A traced function: a program of the vector machine, with `name`, and names of its `inputs` and `outputs`."""
+
+    name: str
+    inputs: list[str]
+    outputs: list[str]
+
+    @property
+    def nop(self) -> int:
+        """Number of vector operations."""
+
+    def counts(self) -> Table:
+        """Operations of the program: `operation` and `count`."""
+
+    def listing(self) -> str:
+        """Vector instructions, as an assembly listing."""
+
+    def rvv(self, lmul: int = 4) -> str:
+        """Code for RISC-V's vector extension, with `lmul` vector registers as one."""
+
+    def clocks(self, machine: str, n: int = 1000, *, command: str | os.PathLike[str] | None = None) -> Table:
+        """Clock periods of `n` elements on a machine, by every clock: `clock`, `clock_periods`, `time` (s). Needs the command `stripmine`."""
+
+    def run(
+        self, *arrays: NDArray[np.float64], execution: str = "chained", **named: NDArray[np.float64]
+    ) -> NDArray[np.float64] | dict[str, NDArray[np.float64]]:
+        """Runs the function on arrays of float64, in the order of its parameters or by name.
+
+        `execution` is "chained", "eager" or "strip:N"; all give the same bits. Elements without a neighbour at every shift are NaN. Returns an
+        array, or a dict of arrays if the function returns several vectors.
+        """
 
 @final
 class Scene:

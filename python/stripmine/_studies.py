@@ -56,9 +56,14 @@ def _printed(scene, verb, options, window, folder, command):
     options = [f"--{name}={value}" for name, value in options.items() if value is not None]
     if window is not None:
         options += ["--window", *map(str, window)]
-    program = _program(command)
     (folder / _SCENE).write_text(scene.toml(), encoding="utf-8")
-    code, printed, said = _run([program, *verb, _SCENE, *options, "--json"], folder)
+    return printed_data([*verb, _SCENE, *options], folder, command)
+
+
+def printed_data(arguments, folder, command):
+    """The JSON that the command prints in a folder."""
+    program = _program(command)
+    code, printed, said = _run([program, *arguments, "--json"], folder)
     for line in said.splitlines():
         if line.startswith("warning: "):
             warnings.warn(line.removeprefix("warning: "), stacklevel=3)

@@ -76,6 +76,20 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         )],
     ),
     (
+        "emit",
+        &[(
+            "stripmine emit bench --isa rvv --out bench.rvv",
+            "writes the programs of a scene as RISC-V vector code, with its arrays",
+        )],
+    ),
+    (
+        "price",
+        &[(
+            "stripmine price kernel.json --machine cray-1",
+            "operations and clock periods of a kernel of your own",
+        )],
+    ),
+    (
         "scene",
         &[
             ("stripmine scene keys lattice-md", "lists every key with unit, default and meaning"),

@@ -6,10 +6,12 @@ mod chart;
 mod compare;
 mod completions;
 mod display;
+mod emit;
 mod explain;
 mod man;
 mod manual;
 mod plot;
+mod price;
 mod processes;
 mod reproduce;
 mod run;
@@ -55,6 +57,8 @@ enum GeneralVerb {
     Bench(Box<bench::BenchVerb>),
     Chart(chart::ChartVerb),
     Compare(compare::CompareVerb),
+    Emit(emit::EmitVerb),
+    Price(price::PriceVerb),
     Explain(Box<explain::ExplainVerb>),
     Completions(completions::Completions),
     Man(man::ManVerb),
@@ -261,6 +265,8 @@ fn execute_verb(
         },
         GeneralVerb::Chart(verb) => verb.run(&common, methods),
         GeneralVerb::Compare(verb) => verb.run(&common, methods),
+        GeneralVerb::Emit(verb) => verb.run(&common, methods),
+        GeneralVerb::Price(verb) => verb.run(&common),
         GeneralVerb::Explain(verb) => verb.run(&common, methods),
         GeneralVerb::Completions(verb) => verb.run(methods),
         GeneralVerb::Man(verb) => verb.run(methods),

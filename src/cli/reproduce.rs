@@ -164,6 +164,15 @@ impl Reproduce {
         }
     }
 
+    /// Returns false, with a message, if an item needs a program that this machine lacks.
+    fn has_its_tools(item: &Item) -> bool {
+        let missing = item.missing_tools();
+        if let Some(why) = &missing {
+            print_message(format_args!("{:<20} SKIPPED: {why}", item.name));
+        }
+        missing.is_none()
+    }
+
     /// Items that remain to be made. If the same command of the same program made some of them here, but not all, it was
     /// interrupted and resumes.
     fn remaining_items(
@@ -176,6 +185,7 @@ impl Reproduce {
             return Ok(asked);
         }
         let here = Provenance::here(common.command.clone(), 0.0);
+        let asked: Vec<&'static Item> = asked.into_iter().filter(|item| Self::has_its_tools(item)).collect();
         let mut made = vec![];
         for item in &asked {
             let there = folder.provenance(item.name)?;

@@ -1,6 +1,7 @@
 //! `stripmine scene`: lists presets and keys, and checks scenes.
 
 use crate::console::{CommandFailure, Common, print, print_json, warn};
+use crate::emission::{EmissionError, ListingTarget, listing_text};
 use crate::frame::{FormattedTable, FrameBuilder};
 use crate::laboratory::programs::operation_frames;
 use crate::model::machine::MachineModel;
@@ -11,6 +12,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 use serde_json::{Map, json};
 use stripmine_kernels::backend::ListingLine;
+use stripmine_kernels::emit::GroupSize;
 use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load, method};
 use stripmine_physics::quoted;
 use stripmine_physics::run::forecast;
@@ -53,6 +55,8 @@ enum SceneAction {
         /// Prints the vector instructions as an assembly listing instead
         #[arg(long)]
         listing: bool,
+        #[command(flatten)]
+        target: ListingTarget,
     },
     /// Lists every key of a scene file: type, unit, default, meaning
     Keys {
@@ -67,10 +71,11 @@ impl SceneVerb {
             SceneAction::List => list(common, methods),
             SceneAction::Show { name } => show(name, common, methods),
             SceneAction::Check { scene, overrides } => check(scene, overrides, common, methods),
-            SceneAction::Programs { scene, overrides, machine, listing } => {
+            SceneAction::Programs { scene, overrides, machine, listing, target } => {
                 let (prepared, _) = load(scene, overrides, methods)?;
                 let machine = machines::find(machine)?;
-                programs(scene, &prepared, &machine, *listing, common)
+                let listing = (*listing || target.size().is_some()).then(|| target.size());
+                programs(scene, &prepared, &machine, listing, common)
             }
             SceneAction::Keys { method } => keys(method.as_deref(), common, methods),
         }
@@ -169,14 +174,14 @@ fn programs(
     name: &str,
     prepared: &Prepared,
     machine: &MachineModel,
-    listing: bool,
+    listing: Option<Option<GroupSize>>,
     common: &Common,
 ) -> Result<(), CommandFailure> {
     let (programs, note) = (prepared.model.programs(), prepared.model.programs_note());
     if programs.is_empty() {
         return Err(StudyError::NoPrograms(name.to_owned()).into());
     }
-    if !listing {
+    let Some(target) = listing else {
         let frames = operation_frames(name, &programs, std::slice::from_ref(machine));
         if common.json {
             let mut data = Map::from_iter(frames.iter().map(|frame| (frame.name.clone(), frame.json())));
@@ -186,22 +191,26 @@ fn programs(
         let [operations, clocks] = frames.each_ref().map(FormattedTable::from);
         let tables = [operations.notes(note), clocks];
         return print(&tables.each_ref().map(terminal::render).join("\n"));
-    }
-    let of = |it: &VectorProgram| ProgramListing {
-        part: it.part,
-        length: it.length,
-        n: it.n,
-        times: it.times,
-        instructions: it.program.lines(),
-        text: it.program.listing(),
     };
-    let listings: Vec<ProgramListing> = programs.iter().map(of).collect();
+    let of = |it: &VectorProgram| {
+        Ok(ProgramListing {
+            part: it.part,
+            length: it.length,
+            n: it.n,
+            times: it.times,
+            instructions: it.program.lines(),
+            text: listing_text(it.part, it.program.as_ref(), target)
+                .map_err(|cause| EmissionError::NoCode { part: it.part, cause })?,
+        })
+    };
+    let listings: Vec<ProgramListing> = programs.iter().map(of).collect::<Result<_, EmissionError>>()?;
     if common.json {
         return print_json(&listings);
     }
     let text = |it: &ProgramListing| {
         let ProgramListing { part, length, n, times, text, .. } = it;
-        format!("; {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
+        let comment = if target.is_some() { '#' } else { ';' };
+        format!("{comment} {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
     };
     let note = note.map_or(String::new(), |note| format!("; {note}\n"));
     print(&(note + &listings.iter().map(text).collect::<String>()))

@@ -1,5 +1,6 @@
 //! Description of a vector machine.
 
+use super::whole_registers::WholeRegisters;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::op::{OpClass, OpCounts};
@@ -117,7 +118,10 @@ pub struct MachineModel {
     pub(super) loop_overhead: Option<SourcedNumber>,
     /// Vector registers; none where vectors have any length.
     pub(super) vector_registers: Option<VectorRegisters>,
+    /// Times of instructions on whole registers, where they do not depend on the number of elements.
+    pub(super) whole_registers: Option<WholeRegisters>,
     /// Clock periods by class; `default` applies to all other classes.
+    #[serde(default)]
     pub(super) start_up: BTreeMap<String, SourcedNumber>,
     #[serde(default)]
     units: BTreeMap<String, Unit>,
@@ -184,6 +188,12 @@ impl MachineModel {
 
     /// Names of the assumed entries, such as `start_up.add`.
     pub(crate) fn assumed(&self) -> Vec<String> {
+        let assumed = |it: &NumberProvenance| *it == NumberProvenance::Assumed;
+        self.provenances().into_iter().filter(|(_, it)| assumed(it)).map(|(name, _)| name).collect()
+    }
+
+    /// Names and provenances of all entries.
+    pub(super) fn provenances(&self) -> Vec<(String, NumberProvenance)> {
         let mut all: Vec<(String, Option<NumberProvenance>)> = vec![];
         let mut add = |name: String, it: Option<&SourcedNumber>| all.push((name, it.map(|it| it.provenance)));
         let (registers, memory) = (self.vector_registers.as_ref(), self.memory.as_ref());
@@ -203,12 +213,25 @@ impl MachineModel {
         add("memory.store_ports".to_owned(), memory.and_then(|it| it.store_ports.as_ref()));
         add("memory.rate".to_owned(), memory.and_then(|it| it.rate.as_ref()));
         add("memory.gather_rate".to_owned(), memory.and_then(|it| it.gather_rate.as_ref()));
+        let whole = self.whole_registers.iter().flat_map(WholeRegisters::entries);
+        all.extend(whole.map(|(name, provenance)| (name, Some(provenance))));
         all.push(("chaining".to_owned(), self.chaining.as_ref().map(|it| it.provenance)));
         for name in OpClass::ALL.iter().map(|class| class.name()) {
             all.push((format!("expansions.{name}"), self.expansions.get(name).map(|it| it.provenance)));
         }
-        all.retain(|(_, provenance)| *provenance == Some(NumberProvenance::Assumed));
-        all.into_iter().map(|(name, _)| name).collect()
+        all.into_iter().filter_map(|(name, provenance)| Some((name, provenance?))).collect()
+    }
+
+    /// True if the machine states start-ups; others are charged a clock period an element by the clocks that need them.
+    pub(crate) fn has_start_ups(&self) -> bool {
+        !self.start_up.is_empty()
+    }
+
+    /// Copy of the machine with another number of vector registers that form one.
+    #[must_use]
+    pub(crate) fn with_group(&self, registers: usize) -> MachineModel {
+        let whole = self.whole_registers.clone().map(|it| it.with_group(registers));
+        MachineModel { whole_registers: whole, ..self.clone() }
     }
 
     /// True if the machine states which operations can execute at once.

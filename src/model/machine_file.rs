@@ -3,6 +3,7 @@
 
 use super::file::{FileEntry, FileKind};
 use super::machine::{ClassCounts, DEFAULT, MachineModel, add_scaled};
+use super::whole_registers::WholeRegisters;
 use stripmine_kernels::isa::op::OpClass;
 use stripmine_physics::input::InputErrors;
 use toml::de::DeValue;
@@ -36,7 +37,12 @@ impl MachineModel {
             let executed = self.executed_for(*class)?;
             self.executed.insert(*class, executed);
         }
-        for class in OpClass::ALL {
+        if let Some(error) = self.whole_registers.as_ref().and_then(WholeRegisters::error) {
+            return Err(error);
+        }
+        // The clock of whole registers needs no start-ups.
+        let needs_start_ups = self.whole_registers.is_none() || self.has_start_ups();
+        for class in OpClass::ALL.iter().filter(|_| needs_start_ups) {
             let name = class.name();
             if self.expansions.get(name).is_some_and(|own| !own.steps.contains_key(name)) {
                 continue;
@@ -103,6 +109,7 @@ fn machine_entry_error(entry: &FileEntry<'_>) -> Option<String> {
             Some(format!("the note of `{of}` is empty; expected the origin of the number"))
         }
         (["start_up", name], _) if *name != DEFAULT => unknown_class_error(name, &path),
+        (["whole_registers", "periods", name], DeValue::Table(_)) => unknown_class_error(name, &path),
         (["units", _, "serves"], DeValue::String(name)) => unknown_class_error(name, &path),
         (["expansions", name], _) => unknown_class_error(name, &path),
         (["expansions", _, "steps"], DeValue::Table(steps)) if steps.is_empty() => {
@@ -125,7 +132,7 @@ fn unknown_class_error(name: &str, path: &str) -> Option<String> {
 fn number_error(value: f64, of: &[&str]) -> Option<String> {
     let (most, is_counted) = match of.last() {
         Some(&"year") => (9999.0, true),
-        Some(&"count" | &"length" | &"load_ports" | &"store_ports") => (1e6, true),
+        Some(&"count" | &"length" | &"load_ports" | &"store_ports" | &"vlen" | &"group") => (1e6, true),
         _ => (1e12, false),
     };
     let expected = match value {

@@ -11,3 +11,4 @@ pub mod host;
 pub mod machine;
 mod machine_file;
 pub mod machines;
+mod whole_registers;

@@ -17,6 +17,8 @@ pub(crate) struct Item {
     /// Name on the command line, and of its template.
     pub name: &'static str,
     make: ItemMaker,
+    /// Programs that it needs and this machine lacks, in words.
+    missing: fn() -> Option<String>,
 }
 
 /// Memory of an item without a page (MiB).
@@ -25,7 +27,21 @@ const USUAL_MEMORY: u64 = 256;
 impl Item {
     /// Item whose template has title, chapter and cost.
     pub(crate) const fn of(name: &'static str, make: ItemMaker) -> Item {
-        Item { name, make }
+        Item { name, make, missing: || None }
+    }
+
+    /// Item that needs programs of others; `missing` says which of them this machine lacks.
+    pub(crate) const fn with_tools(
+        name: &'static str,
+        make: ItemMaker,
+        missing: fn() -> Option<String>,
+    ) -> Item {
+        Item { name, make, missing }
+    }
+
+    /// Programs that the item needs and this machine lacks, in words.
+    pub(crate) fn missing_tools(&self) -> Option<String> {
+        (self.missing)()
     }
 
     fn page(&self) -> Option<Page> {

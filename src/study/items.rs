@@ -4,6 +4,7 @@ use super::Subject;
 use super::explain::certified::{self, PlanTestEffort, QUICK, SCENES, judge_plans};
 use super::explain::{SECONDS, left_out};
 use super::rivals;
+use super::rvv;
 use super::stability::{self, VariedRange, stability};
 use super::trial::{Stopwatch, TrialControl};
 use super::work_precision::{self, work_precision};
@@ -19,6 +20,7 @@ pub(crate) const ITEMS: &[Item] = &[
     Item::of("plans", plan_tests),
     Item::of("left-out", simpler_models),
     Item::of("rivals", rivals::made),
+    Item::with_tools("rvv", rvv::reproduce, rvv::missing_tools),
 ];
 
 /// Tests of plans by carrying them out.

@@ -9,6 +9,7 @@ mod items;
 mod observed;
 pub(crate) mod rivals;
 mod runs;
+mod rvv;
 pub(crate) mod scaling;
 mod short_texts;
 pub(crate) mod stability;

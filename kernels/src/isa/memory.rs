@@ -205,6 +205,21 @@ impl<'a> Memory<'a> {
         self.tables[T::TABLE][slot.array() as usize].cast()
     }
 
+    /// Copy of the elements of an array as bytes; none if it is not bound.
+    pub fn bytes(&self, array: Array, element: &str) -> Option<Vec<u8>> {
+        match element {
+            f64::NAME => self.copied(Slot::new(array), f64::to_ne_bytes),
+            f32::NAME => self.copied(Slot::new(array), f32::to_ne_bytes),
+            _ => self.copied(Slot::new(array), u32::to_ne_bytes),
+        }
+    }
+
+    fn copied<T: Storage, const N: usize>(&self, slot: Slot<T>, bytes: fn(T) -> [u8; N]) -> Option<Vec<u8>> {
+        let column = self.column(slot);
+        let is_bound = !column.origin.is_null();
+        is_bound.then(|| (0..column.length).flat_map(|at| bytes(column.read(at))).collect())
+    }
+
     /// Current value of `counter`.
     #[inline]
     pub fn counted(&self, counter: LaneCounter) -> u64 {

@@ -43,7 +43,8 @@ macro_rules! define_group {
         $(($variant:ident, $doc:literal, $method:path)),*
     }) => {
         $(#[doc = $what])+
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        #[serde(rename_all = "snake_case")]
         pub enum $name {
             $(#[doc = $doc] $variant,)*
         }

@@ -124,4 +124,52 @@ define_arrays! {
     (BodyRateX, "body.dFx", "bodies: rate of the force along x"),
     (BodyRateY, "body.dFy", "bodies: rate of the force along y"),
     (BodyRateZ, "body.dFz", "bodies: rate of the force along z"),
+    (Own0, "own.0", "array 0 of a kernel with names of its own"),
+    (Own1, "own.1", "array 1 of a kernel with names of its own"),
+    (Own2, "own.2", "array 2 of a kernel with names of its own"),
+    (Own3, "own.3", "array 3 of a kernel with names of its own"),
+    (Own4, "own.4", "array 4 of a kernel with names of its own"),
+    (Own5, "own.5", "array 5 of a kernel with names of its own"),
+    (Own6, "own.6", "array 6 of a kernel with names of its own"),
+    (Own7, "own.7", "array 7 of a kernel with names of its own"),
+    (Own8, "own.8", "array 8 of a kernel with names of its own"),
+    (Own9, "own.9", "array 9 of a kernel with names of its own"),
+    (Own10, "own.10", "array 10 of a kernel with names of its own"),
+    (Own11, "own.11", "array 11 of a kernel with names of its own"),
+    (Own12, "own.12", "array 12 of a kernel with names of its own"),
+    (Own13, "own.13", "array 13 of a kernel with names of its own"),
+    (Own14, "own.14", "array 14 of a kernel with names of its own"),
+    (Own15, "own.15", "array 15 of a kernel with names of its own"),
+}
+
+impl Array {
+    /// Number of arrays with names of a kernel's own; they are the last of the list.
+    pub const OWN: usize = 16;
+
+    /// Array with a name of a kernel's own, by its number from 0; none beyond [`Array::OWN`].
+    pub(crate) fn own(number: usize) -> Option<Array> {
+        let first = Array::Own0 as usize;
+        Array::ALL[first..].get(number).copied()
+    }
+
+    /// Number of an array with a name of a kernel's own.
+    pub(crate) fn own_number(self) -> Option<usize> {
+        (self as usize).checked_sub(Array::Own0 as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn own_arrays_are_the_last_of_the_list() {
+        for number in 0..Array::OWN {
+            let array = Array::own(number).unwrap();
+            assert_eq!(array.own_number(), Some(number));
+            assert_eq!(array.label(), format!("own.{number}"));
+        }
+        assert_eq!(Array::own(Array::OWN), None);
+        assert_eq!(Array::BodyRateZ.own_number(), None);
+    }
 }

@@ -59,6 +59,8 @@ define_clocks! {
         "Instructions on different units run at once, a result feeding the next one where the machine chains."),
     (Ports, "ports", ports,
         "As chained, with the machine's memory ports and its rate of gathers and scatters."),
+    (WholeRegisters, "whole registers", whole_registers,
+        "Measured times of instructions on whole registers, however few elements are in use."),
 }
 
 impl Clock {
@@ -97,12 +99,15 @@ fn operations(machine: &MachineModel, work: &ProgramWork) -> Charge {
 
 /// `NOP · n · D`: without a pipeline every element passes through the whole depth of its unit.
 fn scalar(machine: &MachineModel, work: &ProgramWork) -> Charge {
-    Charge { each_element: work.sum(machine, |start_up| start_up), ..Charge::default() }
+    if !machine.has_start_ups() {
+        return operations(machine, work);
+    }
+    Charge { each_element: work.sum(machine, |class| machine.start_up(class)), ..Charge::default() }
 }
 
 /// `NOP · (n + D)`: the pipeline fills once, then delivers one element per clock period.
 fn paper(machine: &MachineModel, work: &ProgramWork) -> Charge {
-    Charge { each_strip: work.sum(machine, |start_up| start_up), ..operations(machine, work) }
+    Charge { each_strip: work.sum(machine, |class| machine.start_up(class)), ..operations(machine, work) }
 }
 
 /// Charges as the paper's clock, with a start-up for every strip of one register, and the loop around the strips.
@@ -123,6 +128,18 @@ fn chained(machine: &MachineModel, work: &ProgramWork) -> Charge {
 /// which the machine has too few registers, are not modelled.
 fn ports(machine: &MachineModel, work: &ProgramWork) -> Charge {
     in_convoys(machine, work, MemoryModel::Ports)
+}
+
+/// `c · ⌈n / VLMAX⌉`: a staircase and not `n + D`. An instruction without a stated time takes a clock period an element.
+///
+/// A machine without such times is charged by the clock with memory ports.
+fn whole_registers(machine: &MachineModel, work: &ProgramWork) -> Charge {
+    let Some(registers) = &machine.whole_registers else { return ports(machine, work) };
+    Charge {
+        strip: Some(registers.elements()),
+        each_strip: work.sum(machine, |class| registers.periods(class).unwrap_or(0.0)),
+        each_element: work.sum(machine, |class| f64::from(u8::from(registers.periods(class).is_none()))),
+    }
 }
 
 /// Charge of a program's convoys.

@@ -3,7 +3,7 @@
 use crate::model::machine::MachineModel;
 use stripmine_kernels::Runnable;
 use stripmine_kernels::backend::tape::Outline;
-use stripmine_kernels::isa::OpCounts;
+use stripmine_kernels::isa::{OpClass, OpCounts};
 
 /// Operations of a program: the number of each and, if known, their order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,13 +30,9 @@ impl ProgramWork {
         (!self.order.is_empty()).then_some(&self.order)
     }
 
-    /// Sums `each(D)` over all operations that `machine` executes.
-    pub(super) fn sum(&self, machine: &MachineModel, each: impl Fn(f64) -> f64) -> f64 {
-        machine
-            .expand(&self.counts)
-            .into_iter()
-            .map(|(class, count)| count as f64 * each(machine.start_up(class)))
-            .sum()
+    /// Sums `each(class)` over all operations that `machine` executes.
+    pub(super) fn sum(&self, machine: &MachineModel, each: impl Fn(OpClass) -> f64) -> f64 {
+        machine.expand(&self.counts).into_iter().map(|(class, count)| count as f64 * each(class)).sum()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Descriptions of methods: their entries in the list of methods, and prepared scenes.
 
+use super::bound::BoundPrograms;
 use super::clock::{Schedule, Until};
 use super::failure::PhysicsFailure;
 use super::simulation::Simulation;
@@ -323,6 +324,11 @@ pub trait Startable: Send + Sync {
     /// Vector programs of a step or its forces, which are counted, listed and timed by models; none where a method has no vector programs.
     fn programs(&self) -> Vec<VectorProgram> {
         vec![]
+    }
+
+    /// Calls `task` once with the programs of a step, or of its forces, and their arrays at the start; returns false where a method has none.
+    fn with_bound_programs(&self, _task: &mut BoundPrograms<'_>) -> bool {
+        false
     }
 
     /// Note on the vector programs beside their counts: the scene itself runs another engine.

@@ -1,5 +1,6 @@
 //! Simulation methods: one folder for each publication, and one line in the [list](METHODS).
 
+mod bound;
 mod clock;
 mod counted;
 mod entry;
@@ -21,6 +22,7 @@ pub mod throughput;
 mod trials;
 
 pub use crate::particles::PerParticle;
+pub use bound::{BoundPrograms, ProgramCall};
 pub use clock::{Clock, Every, Schedule, Until, steps_over};
 pub use counted::SectionCounts;
 pub use entry::{

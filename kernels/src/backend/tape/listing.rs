@@ -14,10 +14,36 @@ impl<L: Element> Tape<L> {
 
     /// Instructions in words.
     pub fn lines(&self) -> Vec<ListingLine> {
-        self.instructions
-            .iter()
-            .map(|instruction| line(self.sections[instruction.section], instruction))
-            .collect()
+        self.instructions.iter().map(|instruction| self.line(instruction)).collect()
+    }
+
+    fn line(&self, instruction: &Instruction<L>) -> ListingLine {
+        let mut words = Vec::from_iter(instruction.to().map(|name| name.to_string()));
+        let mut action = instruction.action;
+        action.parts(|part| match part {
+            OperandRef::V(operand) => words.push(operand.to_string()),
+            OperandRef::P(name) | OperandRef::I(name) => words.push(name.to_string()),
+            OperandRef::Numbers(array) | OperandRef::Entries(array) => words.push(self.array_text(array)),
+            OperandRef::At(name) => {
+                let array = words.pop().unwrap_or_default();
+                words.push(format!("{array}({name})"));
+            }
+            OperandRef::Counter(number) => words.push(format!("C{number}")),
+        });
+        // The first word is the destination, also of an instruction that writes no register.
+        let destination = words.remove(0);
+        let section = self.sections[instruction.section];
+        ListingLine { section, operation: instruction.op().mnemonic(), destination, sources: words }
+    }
+
+    /// An array with its name, and the shift.
+    fn array_text(&self, reference: &ArrayReference) -> String {
+        let own = reference.array.own_number().and_then(|number| self.names.get(number));
+        let name = own.map_or(reference.array.label(), String::as_str);
+        match reference.shift {
+            0 => format!("[{name}]"),
+            shift => format!("[{name}{shift:+}]"),
+        }
     }
 }
 
@@ -34,24 +60,6 @@ pub struct ListingLine {
     pub sources: Vec<String>,
 }
 
-fn line<L: Element>(section: &'static str, instruction: &Instruction<L>) -> ListingLine {
-    let mut words = Vec::from_iter(instruction.to().map(|name| name.to_string()));
-    let mut action = instruction.action;
-    action.parts(|part| match part {
-        OperandRef::V(operand) => words.push(operand.to_string()),
-        OperandRef::P(name) | OperandRef::I(name) => words.push(name.to_string()),
-        OperandRef::Numbers(array) | OperandRef::Entries(array) => words.push(array.to_string()),
-        OperandRef::At(name) => {
-            let array = words.pop().unwrap_or_default();
-            words.push(format!("{array}({name})"));
-        }
-        OperandRef::Counter(number) => words.push(format!("C{number}")),
-    });
-    // The first word is the destination, also of an instruction that writes no register.
-    let destination = words.remove(0);
-    ListingLine { section, operation: instruction.op().mnemonic(), destination, sources: words }
-}
-
 /// Prints a tape, one vector instruction per line.
 pub struct TapeListing<'t, L>(&'t Tape<L>);
 
@@ -66,16 +74,8 @@ impl<L: Element> fmt::Display for Operand<L> {
         match self {
             Operand::Register(name) => name.fmt(f),
             Operand::Uniform(value) => write!(f, "#{}", value.to_f64()),
-            Operand::Memory(from) => from.fmt(f),
-        }
-    }
-}
-
-impl fmt::Display for ArrayReference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.shift {
-            0 => write!(f, "[{}]", self.array.label()),
-            shift => write!(f, "[{}{shift:+}]", self.array.label()),
+            // A folded load is in no listing.
+            Operand::Memory(from) => write!(f, "[{}]", from.array.label()),
         }
     }
 }
@@ -84,8 +84,7 @@ impl<L: Element> fmt::Display for TapeListing<'_, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut section = usize::MAX;
         for (number, instruction) in self.0.instructions.iter().enumerate() {
-            let ListingLine { section: name, operation, destination, sources } =
-                line(self.0.sections[instruction.section], instruction);
+            let ListingLine { section: name, operation, destination, sources } = self.0.line(instruction);
             if instruction.section != section {
                 section = instruction.section;
                 writeln!(f, "; {name}")?;

@@ -11,6 +11,8 @@ use crate::isa::{Element, Footprint, Kernel, OpCounts};
 pub struct Tape<L> {
     pub(super) instructions: Vec<Instruction<L>>,
     pub(super) sections: Vec<&'static str>,
+    /// Names of the kernel's own arrays.
+    pub(super) names: Vec<String>,
     pub(super) sizes: FileSizes,
     pub(super) passes: Vec<Instruction<L>>,
     pub(super) pass_sizes: FileSizes,
@@ -27,7 +29,20 @@ impl<L: Element> Tape<L> {
         let pass_sizes = allocate(&mut passes);
         // Copies without spare capacity: the buffers of the recording are free for the next kernel, and no gaps are left.
         let (instructions, passes) = (instructions.as_slice().to_vec(), passes.as_slice().to_vec());
-        Tape { instructions, sections: recorder.sections.into_inner(), sizes, passes, pass_sizes }
+        Tape {
+            instructions,
+            sections: recorder.sections.into_inner(),
+            names: vec![],
+            sizes,
+            passes,
+            pass_sizes,
+        }
+    }
+
+    /// Gives the kernel's own arrays their names in listings.
+    #[must_use]
+    pub(crate) fn with_names(self, names: Vec<String>) -> Self {
+        Tape { names, ..self }
     }
 
     /// Memory of the instructions in bytes.

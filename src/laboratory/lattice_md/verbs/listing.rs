@@ -1,6 +1,7 @@
 //! `stripmine listing`: vector instructions of a part of the step.
 
 use crate::console::{CommandFailure, Common, print, print_json};
+use crate::emission::ListingTarget;
 use crate::laboratory::lattice_md::study::efficiency_table::TableScene;
 use crate::laboratory::lattice_md::study::listing::listing;
 use crate::results::FinishedItem;
@@ -15,6 +16,8 @@ pub(super) struct ListingVerb {
     part: Part,
     #[command(flatten)]
     scene: TableScene,
+    #[command(flatten)]
+    target: ListingTarget,
 }
 
 /// Parser of the existing parts; clap lists them for any other name.
@@ -28,7 +31,7 @@ fn part_parser() -> impl TypedValueParser<Value = Part> {
 
 impl ListingVerb {
     pub(super) fn run(&self, common: &Common) -> Result<(), CommandFailure> {
-        let (instructions, text) = listing(self.part, &self.scene)?;
+        let (instructions, text) = listing(self.part, &self.scene, self.target.size())?;
         if common.json { print_json(&FinishedItem::of([instructions]).json()) } else { print(&text) }
     }
 }

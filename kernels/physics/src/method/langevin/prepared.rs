@@ -5,14 +5,15 @@ use super::chosen_search::ChosenSearch;
 use super::dynamics::BathDynamics;
 use super::losses;
 use super::options::PairSearchKind;
-use super::programs::programs;
+use super::programs::{programs, with_bound_programs};
 use super::scene::LangevinScene;
 use super::simulation;
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
 use crate::method::pairwise::{Dynamics, PairForcesTask, StateSize};
 use crate::method::{
-    Fact, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable, VectorProgram,
+    BoundPrograms, Fact, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable,
+    VectorProgram,
 };
 use crate::number::significant;
 use crate::particles::{Particle, Particles};
@@ -162,6 +163,10 @@ impl Startable for CheckedLangevin {
 
     fn programs(&self) -> Vec<VectorProgram> {
         programs(self)
+    }
+
+    fn with_bound_programs(&self, task: &mut BoundPrograms<'_>) -> bool {
+        with_bound_programs(self, task)
     }
 
     fn programs_note(&self) -> Option<String> {

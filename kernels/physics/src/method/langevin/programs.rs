@@ -3,8 +3,9 @@
 use super::checked::CheckedLangevin;
 use super::chosen_search::widest_cell;
 use super::dynamics::BathDynamics;
-use crate::method::VectorProgram;
 use crate::method::pairwise::{Dynamics, LawTask};
+use crate::method::{BoundPrograms, ProgramCall, VectorProgram};
+use stripmine_kernels::isa::{Array, Memory, Slot};
 use stripmine_kernels::law::Law;
 use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::mask::Mask;
@@ -43,6 +44,35 @@ pub(super) fn programs(checked: &CheckedLangevin) -> Vec<VectorProgram> {
     vec![VectorProgram { part: "forces", length: length.symbol(), n: shape.swept().len(), times: 1, program }]
 }
 
+/// Calls `task` with the program of the forces and the lattice vectors at the start; returns false without a program. Of two particles in a cell the
+/// later one counts.
+pub(super) fn with_bound_programs(checked: &CheckedLangevin, task: &mut BoundPrograms<'_>) -> bool {
+    let Some((shape, frame, mask)) = checked.has_pairs().then(|| lattice(checked)).flatten() else {
+        return false;
+    };
+    let (mut x, mut y) = (vec![1e30; shape.padded()], vec![1e30; shape.padded()]);
+    for particle in checked.particles.all() {
+        let place: [f64; 2] =
+            std::array::from_fn(|axis| (particle.position[axis] - frame.origin[axis]) / frame.edge[axis]);
+        let cell = shape.position(place[0].floor() as isize, place[1].floor() as isize);
+        let [from_x, from_y] =
+            [0, 1].map(|axis| (place[axis] - place[axis].floor() - 0.5) * frame.edge[axis]);
+        (x[cell], y[cell]) = (from_x, from_y);
+    }
+    for image in shape.images() {
+        (x[image.cell], y[image.cell]) = (x[image.source], y[image.source]);
+    }
+    let (mut fx, mut fy) = (vec![0.0; shape.padded()], vec![0.0; shape.padded()]);
+    let program = BathDynamics::of(checked).with_law(LatticeForceProgram(&mask, shape, frame));
+    let memory = Memory::new()
+        .read(Slot::new(Array::X), &x)
+        .read(Slot::new(Array::Y), &y)
+        .write(Slot::new(Array::Fx), &mut fx)
+        .write(Slot::new(Array::Fy), &mut fy);
+    task(&[ProgramCall { part: "forces", program: program.as_ref(), range: shape.swept() }], &memory);
+    true
+}
+
 /// Builds the program of the forces of a law on a lattice.
 struct LatticeForceProgram<'m>(&'m Mask, LatticeShape, LatticeFrame);
 
@@ -64,7 +94,6 @@ mod tests {
     use crate::particles::{Particle, Particles};
     use crate::scene::SceneValues;
     use crate::words::Words;
-    use stripmine_kernels::isa::{Array, Memory, Slot};
     use stripmine_kernels::noise::{RandomPurpose, normals};
     use stripmine_kernels::{Execution, InstructionSet};
 

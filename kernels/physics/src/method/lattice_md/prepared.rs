@@ -6,9 +6,12 @@ use super::facts::{expected_error, facts};
 use super::fast::reach;
 use super::programs::with_program_law;
 use super::theory::limits::step_limits;
-use super::{Lengths, StepProgram, memory, model, programs, running};
+use super::{Lengths, ProgramArrays, StepProgram, memory, model, programs, running};
 use crate::method::pairwise::PairForcesTask;
-use crate::method::{PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable, VectorProgram};
+use crate::method::{
+    BoundPrograms, PhysicsFailure, Prepared, ProgramCall, Schedule, Simulation, StartPurpose, Startable,
+    VectorProgram,
+};
 use crate::particles::Particles;
 use crate::scene::{Precision, SceneErrors, WallMotion};
 use crate::structure::PairForces;
@@ -111,6 +114,27 @@ impl Startable for CheckedGranularScene {
             program: step.program,
         };
         programs(&model, Precision::F64).into_iter().map(as_any).collect()
+    }
+
+    fn with_bound_programs(&self, task: &mut BoundPrograms<'_>) -> bool {
+        let on_lattice = if self.scene.needs_lattice() { None } else { self.on_lattice() };
+        if on_lattice.is_none() && !self.scene.needs_lattice() {
+            return false;
+        }
+        let model = model(on_lattice.as_ref().unwrap_or(self));
+        let programs = programs(&model, self.scene.machine.precision);
+        let mut arrays = ProgramArrays::<f64, f64>::new(&model, &self.particles);
+        let (memory, lengths) = arrays.memory();
+        let calls: Vec<ProgramCall<'_>> = programs
+            .iter()
+            .map(|step| ProgramCall {
+                part: step.part.name(),
+                program: step.program.as_ref(),
+                range: lengths.range(step.length),
+            })
+            .collect();
+        task(&calls, &memory);
+        true
     }
 
     fn programs_note(&self) -> Option<String> {

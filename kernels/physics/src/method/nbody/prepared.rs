@@ -1,20 +1,22 @@
 //! Prepared scene of bodies: facts, step limits, memory forecast, settings and the start of a simulation.
 
+use super::bodies::PointMasses;
 use super::checked::CheckedNbody;
 use super::field::GravityField;
 use super::options::StartKind;
 use super::scene::constant_of;
-use super::shifted::counted;
+use super::shifted::{counted, with_bound_programs};
 use super::simulation;
 use super::starts::ORBIT;
 use crate::domain::{BoxSide, Domain};
 use crate::memory::{MemoryForecast, PROGRAM, RankMemory, available};
 use crate::method::entry::left_out;
 use crate::method::{
-    Fact, LimitConsequence, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose, Startable,
-    StepLimit, VectorProgram,
+    BoundPrograms, Fact, LimitConsequence, PhysicsFailure, Prepared, Schedule, Simulation, StartPurpose,
+    Startable, StepLimit, VectorProgram,
 };
 use crate::particles::{Particle, Particles};
+use crate::scene::Precision;
 use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::{Map, Value, json};
@@ -151,6 +153,18 @@ impl Startable for CheckedNbody {
 
     fn programs(&self) -> Vec<VectorProgram> {
         counted(self.scene.softening, self.particles.len())
+    }
+
+    fn with_bound_programs(&self, task: &mut BoundPrograms<'_>) -> bool {
+        let all = self.particles.all();
+        let bodies = PointMasses::new(all.iter().map(|body| (body.position, body.velocity, body.mass)));
+        match self.scene.precision {
+            Precision::F64 => with_bound_programs::<f64>(self.scene.softening, &bodies, task),
+            Precision::F32 | Precision::Mixed => {
+                with_bound_programs::<f32>(self.scene.softening, &bodies, task)
+            }
+        }
+        true
     }
 
     fn start(&self, purpose: StartPurpose) -> Result<Box<dyn Simulation>, PhysicsFailure> {

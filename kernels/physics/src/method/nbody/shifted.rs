@@ -3,7 +3,7 @@
 use super::bodies::{PointMasses, StateColumns};
 use super::rounded::RoundedBodies;
 use super::sums::{ForceSums, StopCallback, over, potential};
-use crate::method::VectorProgram;
+use crate::method::{BoundPrograms, ProgramCall, VectorProgram};
 use stripmine_kernels::backend;
 use stripmine_kernels::isa::{Memory, ProgramError, Slot};
 use stripmine_kernels::law::gravity::Gravity;
@@ -60,6 +60,42 @@ pub(super) fn counted(softening: f64, count: usize) -> Vec<VectorProgram> {
         .filter(|(shifts, times)| shifts * times > 0)
         .map(|it| of(it.0, it.1))
         .collect()
+}
+
+/// Binds the bodies and their sums, which are set to zero.
+fn bound<'a, P: backend::Precision>(bodies: &'a RoundedBodies<P>, sums: &'a mut [Vec<P>; 6]) -> Memory<'a> {
+    sums.iter_mut().for_each(|sums| sums.fill(P::default()));
+    let mut memory = Memory::new();
+    memory.bind_read(Slot::new(body_array(ParticleField::Mass)), &bodies.mass);
+    for axis in AXES {
+        memory.bind_read(Slot::new(BODY_POSITION[axis as usize]), &bodies.position[axis as usize]);
+        if is_split::<P>() {
+            memory.bind_read(Slot::new(BODY_REST[axis as usize]), &bodies.rest[axis as usize]);
+        }
+        let of_velocity = body_array(ParticleField::Velocity(axis));
+        memory.bind_read(Slot::new(of_velocity), &bodies.velocity[axis as usize]);
+    }
+    let [fx, fy, fz, rate_x, rate_y, rate_z] = sums;
+    for (axis, (force, rate)) in AXES.into_iter().zip([(fx, rate_x), (fy, rate_y), (fz, rate_z)]) {
+        memory.bind_write(Slot::new(body_sum_array(ParticleSum::Force(axis))), force);
+        memory.bind_write(Slot::new(body_sum_array(ParticleSum::ForceRate(axis))), rate);
+    }
+    memory
+}
+
+/// Calls `task` with the programs of the forces and their arrays.
+pub(super) fn with_bound_programs<P: backend::Precision>(
+    softening: f64,
+    bodies: &PointMasses,
+    task: &mut BoundPrograms<'_>,
+) {
+    let mut shifted =
+        ShiftedPrograms::<P>::new(softening, bodies, (Execution::Chained, InstructionSet::best()));
+    shifted.bodies.convert_bodies(&bodies.position, None);
+    let ShiftedPrograms { forces, bodies, sums, count, .. } = &mut shifted;
+    let calls: Vec<ProgramCall<'_>> =
+        forces.iter().map(|program| ProgramCall { part: "forces", program, range: 0..*count }).collect();
+    task(&calls, &bound(bodies, sums));
 }
 
 impl<P: backend::Precision> ShiftedPrograms<P> {
@@ -132,23 +168,8 @@ impl<P: backend::Precision> ForceSums for ShiftedPrograms<P> {
         if velocity.is_some() && self.with_rates.is_empty() {
             self.with_rates = programs(self.bodies.units.length(self.softening), count);
         }
-        self.sums.iter_mut().for_each(|sums| sums.fill(P::default()));
         let ShiftedPrograms { forces, with_rates, bodies, sums, .. } = self;
-        let mut memory = Memory::new();
-        memory.bind_read(Slot::new(body_array(ParticleField::Mass)), &bodies.mass);
-        for axis in AXES {
-            memory.bind_read(Slot::new(BODY_POSITION[axis as usize]), &bodies.position[axis as usize]);
-            if is_split::<P>() {
-                memory.bind_read(Slot::new(BODY_REST[axis as usize]), &bodies.rest[axis as usize]);
-            }
-            let of_velocity = body_array(ParticleField::Velocity(axis));
-            memory.bind_read(Slot::new(of_velocity), &bodies.velocity[axis as usize]);
-        }
-        let [fx, fy, fz, rate_x, rate_y, rate_z] = sums;
-        for (axis, (force, rate)) in AXES.into_iter().zip([(fx, rate_x), (fy, rate_y), (fz, rate_z)]) {
-            memory.bind_write(Slot::new(body_sum_array(ParticleSum::Force(axis))), force);
-            memory.bind_write(Slot::new(body_sum_array(ParticleSum::ForceRate(axis))), rate);
-        }
+        let memory = bound(bodies, sums);
         let configuration = (self.execution, self.set);
         match velocity {
             None => run(forces, &memory, count, configuration, stop)?,
