@@ -370,7 +370,7 @@ fn no_verb_overwrites_foreign_files() {
     let there = folder.path().join("there");
     succeed(run(&there, &["--set", "run.thermo_every=5"]));
     let there = there.to_str().unwrap();
-    let verbs: [(&[&str], &str); 10] = [
+    let verbs: [(&[&str], &str); 11] = [
         (&["run", "two-discs"], "thermo.csv"),
         (&["plot", there], "last-state.png"),
         (&["plot", there], "plot.files"),
@@ -381,6 +381,7 @@ fn no_verb_overwrites_foreign_files() {
         (&["chart", "density-cost"], "index.html"),
         (&["chart", "soft-hard"], "thesis.tex"),
         (&["validate-model"], "validation"),
+        (&["emit", "bench", "--isa", "rvv"], "kernels.S"),
     ];
     for (number, (arguments, name)) in verbs.into_iter().enumerate() {
         let out = folder.path().join(number.to_string());
@@ -398,7 +399,7 @@ fn no_verb_overwrites_foreign_files() {
     refused(command, 2, &["host.toml", "--force"]);
     // The list is complete: a verb with an --out that is not tried here fails this.
     let tried = ["run", "plot", "reproduce", "chart stability", "chart work-precision", "chart density-cost"];
-    let more = ["chart soft-hard", "chart accuracy", "validate-model", "calibrate"];
+    let more = ["chart soft-hard", "chart accuracy", "validate-model", "calibrate", "emit"];
     let tried = [&tried[..], &more].concat();
     let help = |verb: &[&str]| {
         String::from_utf8(stripmine(&[verb, &["--help"]].concat()).output().unwrap().stdout).unwrap()

@@ -27,7 +27,7 @@ fn user_machine_files_are_used_by_every_clock() {
     let out = stripmine(&["table", "--ladder", "--machine", &path, "--json"]).success();
     let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
     assert_eq!(data["machines"][0]["machine"], "Mine");
-    assert_eq!(data["ladder"].as_array().unwrap().len(), 6);
+    assert_eq!(data["ladder"].as_array().unwrap().len(), 7);
     assert!(data["machines"][0]["share_of_the_last_rung_from_assumed_start_ups"].as_f64().unwrap() > 0.0);
 }
 
@@ -61,6 +61,35 @@ fn all_wrong_values_of_machine_files_are_reported() {
         "mine.toml:6:21: `start_up.default` is -20",
     ] {
         assert!(complaint.contains(said), "{said}: {complaint}");
+    }
+}
+
+#[test]
+fn wrong_whole_registers_are_reported_with_their_location() {
+    let folder = tempfile::tempdir().unwrap();
+    let measured = MACHINE.split("[start_up]").next().unwrap().to_owned()
+        + r#"[whole_registers]
+vlen = { value = 256, provenance = "assumed", note = "a test" }
+group = { value = 4, provenance = "assumed", note = "a test" }
+[whole_registers.periods]
+add = { value = [1, 2, 4, 8], provenance = "assumed", note = "a test" }
+"#;
+    let ladder = |text: &str| stripmine(&["table", "--ladder", "--machine", &file(&folder, text), "--json"]);
+    let out = ladder(&measured).success();
+    let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    assert_eq!(data["machines"][0]["machine"], "Mine");
+    for (old, new, said) in [
+        ("value = 4,", "value = 3,", "mine.toml:7:9: `whole_registers.group` is 3"),
+        ("value = 256", "value = 100", "mine.toml:6:8: `whole_registers.vlen` is 100"),
+        ("value = 256", "value = -64", "`whole_registers.vlen` is -64"),
+        ("[1, 2, 4, 8]", "[1, 2, 4]", "mine.toml:9:"),
+        ("[1, 2, 4, 8]", "[1, 2, 4, 0]", "`whole_registers.periods.add` is 0"),
+        ("add =", "plus =", "`plus` is not a class of operations"),
+    ] {
+        assert!(measured.contains(old), "{old}");
+        let out = ladder(&measured.replace(old, new)).code(3);
+        let complaint = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+        assert!(complaint.contains(said) && complaint.contains("mine.toml:"), "{said}: {complaint}");
     }
 }
 

@@ -45,7 +45,7 @@ impl<T: Kernel> Program<T> {
         Program { text, tape, footprint }
     }
 
-    /// A kernel recorded as `tape`, of which all accesses are within `footprint`.
+    /// A kernel recorded as `tape`; all its accesses are within `footprint`.
     pub(crate) fn with_footprint(text: T, tape: Tape<T::Lane>, footprint: Footprint) -> Self {
         Program { text, tape, footprint }
     }

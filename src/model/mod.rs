@@ -11,4 +11,5 @@ pub mod host;
 pub mod machine;
 mod machine_file;
 pub mod machines;
+mod sourced;
 mod whole_registers;

@@ -1,6 +1,6 @@
 //! Processors whose instructions take the time of whole registers, however few elements are in use.
 
-use super::machine::{SourcedNumber, SourcedValue};
+use super::sourced::{NumberProvenance, SourcedNumber, SourcedValue};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::OpClass;
@@ -59,7 +59,7 @@ impl WholeRegisters {
     }
 
     /// Entries with their numbers: name and provenance.
-    pub(super) fn entries(&self) -> impl Iterator<Item = (String, super::machine::NumberProvenance)> {
+    pub(super) fn entries(&self) -> impl Iterator<Item = (String, NumberProvenance)> {
         let alone = [("vlen", &self.vlen), ("group", &self.group)];
         let alone = alone.map(|(name, it)| (format!("whole_registers.{name}"), it.provenance));
         let periods = self.periods.iter();

@@ -46,7 +46,16 @@ const DEPENDENCIES: [(&str, &[&str]); 3] = [
     ),
     (
         "python",
-        &["arrow-array", "arrow-schema", "numpy", "pyo3", "serde_json", "stripmine-physics", "tempfile"],
+        &[
+            "arrow-array",
+            "arrow-schema",
+            "numpy",
+            "pyo3",
+            "serde_json",
+            "stripmine-kernels",
+            "stripmine-physics",
+            "tempfile",
+        ],
     ),
 ];
 

@@ -23,7 +23,7 @@ impl Uses {
 }
 
 /// Move between a register and its place in memory: true to store, the register of the tape, and the group.
-pub(super) type Spill = (bool, usize, usize);
+pub(super) type SpillMove = (bool, usize, usize);
 
 /// Groups of vector registers for a file of the tape.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl RegisterPool {
     }
 
     /// Takes a group for the running instruction, the preferred one if it is free.
-    fn take(&mut self, preferred: usize, now: usize, spills: &mut Vec<Spill>) -> Option<usize> {
+    fn take(&mut self, preferred: usize, now: usize, spills: &mut Vec<SpillMove>) -> Option<usize> {
         let is_free = |group: &usize| self.groups[*group] == (None, false);
         let all = 0..self.groups.len();
         let free = Some(preferred % self.groups.len()).filter(is_free).or_else(|| all.clone().find(is_free));
@@ -64,7 +64,7 @@ impl RegisterPool {
     }
 
     /// Group of a register that the instruction reads; loads it if it was spilled.
-    pub(super) fn read(&mut self, home: usize, now: usize, spills: &mut Vec<Spill>) -> Option<usize> {
+    pub(super) fn read(&mut self, home: usize, now: usize, spills: &mut Vec<SpillMove>) -> Option<usize> {
         let group = match self.homes[home].0 {
             Some(group) => group,
             None => {
@@ -79,13 +79,13 @@ impl RegisterPool {
     }
 
     /// Group for a temporary value of the instruction.
-    pub(super) fn temporary(&mut self, now: usize, spills: &mut Vec<Spill>) -> Option<usize> {
+    pub(super) fn temporary(&mut self, now: usize, spills: &mut Vec<SpillMove>) -> Option<usize> {
         let last = self.groups.len() - 1;
         self.take(last, now, spills)
     }
 
     /// Group for the result of the instruction, which is bound by [`bind`](Self::bind).
-    pub(super) fn result(&mut self, home: usize, now: usize, spills: &mut Vec<Spill>) -> Option<usize> {
+    pub(super) fn result(&mut self, home: usize, now: usize, spills: &mut Vec<SpillMove>) -> Option<usize> {
         self.take(home, now, spills)
     }
 

@@ -5,7 +5,7 @@
 //! mask of a merge, so one group of registers is lost to predicates.
 
 use super::forms::{FORMS, Form};
-use super::registers::{RegisterPool, Spill, Uses};
+use super::registers::{RegisterPool, SpillMove, Uses};
 use super::{EmitError, EmittedArray, EmittedKernel, EmittedLine, GroupSize, Purpose};
 use crate::backend::tape::{
     ArrayReference, Effect, Indices, Instruction, Number, Operand, PredicateInstruction, RegisterKind,
@@ -165,7 +165,7 @@ impl Emitter {
         }
     }
 
-    fn spill(&mut self, pool: usize, spills: Vec<Spill>) {
+    fn spill(&mut self, pool: usize, spills: Vec<SpillMove>) {
         for (stores, home, group) in spills {
             let place = if pool == 0 { home } else { self.places + home };
             self.push(Purpose::Spill, format!("addi t0, zero, {place}"));
@@ -399,7 +399,7 @@ impl Emitter {
     fn group(
         &mut self,
         pool: usize,
-        find: impl FnOnce(&mut RegisterPool, usize, &mut Vec<Spill>) -> Option<usize>,
+        find: impl FnOnce(&mut RegisterPool, usize, &mut Vec<SpillMove>) -> Option<usize>,
     ) -> usize {
         let mut spills = vec![];
         let found = find(&mut self.pools[pool], self.now, &mut spills);

@@ -10,7 +10,7 @@ use crate::model::clock::{Clock, ProgramWork};
 use crate::model::machines;
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use picture::strip_picture;
-use runs::{CaseRuns, RegisterFile, RunSums, SCENES, SectionRow, run_case};
+use runs::{CaseRuns, RunSums, SCENES, SectionRow, VectorFile, run_case};
 use stripmine_kernels::emit::{FORMS, GroupSize, Purpose};
 use stripmine_physics::method::{METHODS, load};
 
@@ -38,7 +38,7 @@ pub(super) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         (0..SCENES.len()).flat_map(|scene| (0..counts.len()).map(move |at| (scene, at))).collect();
     let cases = ProgressMeter::new(cases.len() as f64, lab.progress)
         .run_cases(&cases, |&(scene, at)| run_case(&tools, (scene, counts[at]), at < TRACED))?;
-    let files = RegisterFile::all();
+    let files = VectorFile::all();
     let mut sums = vec![RunSums::default(); files.len()];
     for case in &cases {
         sums.iter_mut().zip(&case.sums).for_each(|(sum, more)| sum.add(more));
@@ -93,7 +93,7 @@ fn purpose_share(sum: &RunSums, purpose: Purpose) -> f64 {
     100.0 * count as f64 / (sum.executed as f64).max(1.0)
 }
 
-fn file_frame(files: &[RegisterFile], sums: &[RunSums]) -> ResultFrame {
+fn file_frame(files: &[VectorFile], sums: &[RunSums]) -> ResultFrame {
     FrameBuilder::of(files.iter().zip(sums))
         .count("VLEN", |(file, _)| file.vlen)
         .count("LMUL", |(file, _)| file.size.registers())

@@ -1,6 +1,6 @@
 //! Picture of a vector in strips, with the instructions of a strip beside it.
 
-use super::runs::{RegisterFile, emitted};
+use super::runs::{VectorFile, emitted};
 use crate::console::CommandFailure;
 use crate::report::figure::{Drawing, DrawnShape, Picture, Tint};
 
@@ -8,17 +8,18 @@ use crate::report::figure::{Drawing, DrawnShape, Picture, Tint};
 const SHOWN: usize = 24;
 /// Height of a line of text, and of a strip with its gap (widths of an element).
 const LINE: f64 = 2.2;
-const STRIP: f64 = 3.2;
+const STRIP: f64 = 5.4;
 
-/// Draws the longest vectors of the first scene in strips of 64 elements, and the first instructions that run for each strip.
+/// Draws the vectors of the longest program of the first scene in strips of 64 elements, and the first instructions that run for each strip.
 ///
 /// # Errors
 /// As [`emitted`].
 pub(super) fn strip_picture(count: usize) -> Result<Picture, CommandFailure> {
-    let file = RegisterFile::CRAY;
+    let file = VectorFile::CRAY;
     let scene = emitted(0, count, file.size)?;
     let mut shapes = vec![];
-    let Some(it) = scene.programs.iter().max_by_key(|it| it.n) else {
+    // The program with most instructions: the forces.
+    let Some(it) = scene.programs.iter().max_by_key(|it| it.kernel.lines.len()) else {
         return Ok(drawing(shapes, 0.0));
     };
     let elements = file.elements();
@@ -30,7 +31,7 @@ pub(super) fn strip_picture(count: usize) -> Result<Picture, CommandFailure> {
             shapes
                 .push(DrawnShape::Rectangle { corners: [[x, low], [x + 0.9, low + 1.6]], tint: Tint::Still });
         }
-        shapes.push(text([elements as f64 / 2.0, low + 2.3], format!("strip {}: vl = {length}", strip + 1)));
+        shapes.push(text([elements as f64 / 2.0, low + 3.0], format!("strip {}: vl = {length}", strip + 1)));
     }
     for (at, line) in it.kernel.lines.iter().skip(it.kernel.start).take(SHOWN).enumerate() {
         shapes.push(text([elements as f64 + 22.0, 1.0 - LINE * at as f64], line.code.clone()));
@@ -45,7 +46,7 @@ fn text(centre: [f64; 2], words: String) -> DrawnShape {
 
 fn drawing(shapes: Vec<DrawnShape>, bottom: f64) -> Picture {
     Picture::Drawing(Drawing {
-        window: [[-1.0, bottom], [RegisterFile::CRAY.elements() as f64 + 44.0, 4.0]],
+        window: [[-1.0, bottom], [VectorFile::CRAY.elements() as f64 + 44.0, 4.0]],
         width: 860.0,
         shapes,
         shades: None,

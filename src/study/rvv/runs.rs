@@ -19,19 +19,19 @@ const STEPS: u64 = 2;
 
 /// Vector registers of a processor: their length, and how many form one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct RegisterFile {
+pub(super) struct VectorFile {
     /// Length of a register (bits).
     pub vlen: usize,
     pub size: GroupSize,
 }
 
-impl RegisterFile {
+impl VectorFile {
     /// Registers of a CRAY-1: eight of 64 numbers.
-    pub(super) const CRAY: RegisterFile = RegisterFile { vlen: 1024, size: GroupSize::Four };
+    pub(super) const CRAY: VectorFile = VectorFile { vlen: 1024, size: GroupSize::Four };
 
     /// All files, those of one group size beside each other.
-    pub(super) fn all() -> Vec<RegisterFile> {
-        let of = |size| [128, 256, 512, 1024].map(|vlen| RegisterFile { vlen, size });
+    pub(super) fn all() -> Vec<VectorFile> {
+        let of = |size| [128, 256, 512, 1024].map(|vlen| VectorFile { vlen, size });
         GroupSize::ALL.into_iter().flat_map(of).collect()
     }
 
@@ -129,7 +129,7 @@ pub(super) fn run_case(
 ) -> Result<CaseRuns, CommandFailure> {
     let mut runs = CaseRuns::default();
     let mut built: Option<(EmittedScene, BuiltProgram)> = None;
-    for file in RegisterFile::all() {
+    for file in VectorFile::all() {
         if built.as_ref().is_none_or(|(it, _)| it.size != file.size) {
             let emitted = emitted(scene, count, file.size)?;
             let program = tools.build(&emitted)?;
@@ -150,7 +150,7 @@ pub(super) fn run_case(
                 sum.executed += executed;
                 *sum.by_purpose.entry(line.purpose).or_default() += executed;
             }
-            if file == RegisterFile::CRAY {
+            if file == VectorFile::CRAY {
                 runs.sections.extend(section_rows(SCENES[scene].0, it, emitted.steps, executed));
             }
         }
@@ -164,7 +164,7 @@ pub(super) fn run_case(
 fn unexplained<'m>(
     it: &EmittedProgram,
     steps: u64,
-    file: RegisterFile,
+    file: VectorFile,
     mnemonics: impl Iterator<Item = &'m str>,
     executed: &[u64],
 ) -> u64 {
@@ -194,7 +194,7 @@ fn section_rows(scene: &'static str, it: &EmittedProgram, steps: u64, executed: 
         program: it.name.clone(),
         section,
         n: it.n,
-        strips: steps * RegisterFile::CRAY.strips(it.n),
+        strips: steps * VectorFile::CRAY.strips(it.n),
         ledger,
         text: 0,
         by_purpose: BTreeMap::new(),
