@@ -45,12 +45,15 @@ pub(super) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     }
     // Programs of a scene do not depend on its size.
     let programs: usize = cases.iter().step_by(counts.len()).map(|case| case.programs).sum();
+    // The page shows the first scene of the smallest size.
+    let shown = cases.first().map_or(0, |case| case.sections.len());
     let sections: Vec<SectionRow> =
         cases.into_iter().flat_map(|CaseRuns { sections, .. }| sections).collect();
     let frames = [
         summary_frame(&tools, programs, &sums, &sections),
         file_frame(&files, &sums),
-        section_frame(&sections),
+        section_frame("equations", &sections[..shown]),
+        section_frame("sections", &sections),
         mnemonic_frame(&sections),
         silicon_frame()?,
         FrameBuilder::of(FORMS)
@@ -108,7 +111,7 @@ fn file_frame(files: &[VectorFile], sums: &[RunSums]) -> ResultFrame {
         .frame("files", "Executed instructions by purpose")
 }
 
-fn section_frame(sections: &[SectionRow]) -> ResultFrame {
+fn section_frame(name: &str, sections: &[SectionRow]) -> ResultFrame {
     FrameBuilder::of(sections)
         .text("scene", |it| it.scene)
         .text("program", |it| it.program.clone())
@@ -121,7 +124,7 @@ fn section_frame(sections: &[SectionRow]) -> ResultFrame {
         .count("executed", |it| it.executed(Purpose::Operation))
         .count("expansion", |it| it.executed(Purpose::Expansion))
         .count("spills", |it| it.executed(Purpose::Spill))
-        .frame("sections", "Operations by equation, registers of 64 numbers")
+        .frame(name, "Operations by equation, registers of 64 numbers")
 }
 
 fn mnemonic_frame(sections: &[SectionRow]) -> ResultFrame {
