@@ -11,7 +11,7 @@ use crate::model::machines;
 use crate::results::{FinishedItem, ProgressMeter, StudyEnvironment, StudySize};
 use picture::strip_picture;
 use runs::{CaseRuns, RunSums, SCENES, SectionRow, VectorFile, run_case};
-use stripmine_kernels::emit::{FORMS, GroupSize, Purpose};
+use stripmine_kernels::emit::{FORMS, Form, GroupSize, Purpose};
 use stripmine_physics::method::{METHODS, load};
 
 /// Numbers of particles: vectors with tails of every kind.
@@ -56,12 +56,8 @@ pub(super) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
         section_frame("sections", &sections),
         mnemonic_frame(&sections),
         silicon_frame()?,
-        FrameBuilder::of(FORMS)
-            .text("operation", |form| form.op.mnemonic())
-            .text("operands", |form| form.operands)
-            .count("instructions", |form| form.code.len())
-            .text("code", |form| form.code.join("; "))
-            .frame("forms", "RISC-V instructions of every operation"),
+        form_frame("forms", FORMS.iter()),
+        form_frame("expansion", FORMS.iter().filter(|form| form.code.len() > 1)),
     ];
     Ok(FinishedItem::of(frames).with_picture("strips", strip_picture(counts[0])?))
 }
@@ -172,4 +168,13 @@ fn silicon_frame() -> Result<ResultFrame, CommandFailure> {
         .number("a period an element (million)", 3, |(_, _, operations, _)| 1e-6 * operations)
         .number("time, LMUL 4 (ms)", 2, |(_, periods, _, period)| 1e-6 * periods[2] * period)
         .frame("silicon", "A step of the default bench on processors with the vector extension"))
+}
+
+fn form_frame(name: &str, forms: impl Iterator<Item = &'static Form>) -> ResultFrame {
+    FrameBuilder::of(forms)
+        .text("operation", |form| form.op.mnemonic())
+        .text("operands", |form| form.operands)
+        .count("instructions", |form| form.code.len())
+        .text("code", |form| form.code.join("; "))
+        .frame(name, "RISC-V instructions of operations")
 }

@@ -4,7 +4,8 @@ use super::runs::{VectorFile, emitted};
 use crate::console::CommandFailure;
 use crate::report::figure::{Drawing, DrawnShape, Picture, Tint};
 
-/// Instructions in the picture.
+/// Elements of a box, and instructions in the picture.
+const BOX: usize = 8;
 const SHOWN: usize = 24;
 /// Height of a line of text, and of a strip with its gap (widths of an element).
 const LINE: f64 = 2.2;
@@ -26,10 +27,12 @@ pub(super) fn strip_picture(count: usize) -> Result<Picture, CommandFailure> {
     for strip in 0..file.strips(it.n) as usize {
         let length = elements.min(it.n - strip * elements);
         let low = -(strip as f64) * STRIP;
-        for element in 0..length {
-            let x = element as f64;
-            shapes
-                .push(DrawnShape::Rectangle { corners: [[x, low], [x + 0.9, low + 1.6]], tint: Tint::Still });
+        for first in (0..length).step_by(BOX) {
+            let [left, right] = [first, (first + BOX).min(length)].map(|at| at as f64);
+            shapes.push(DrawnShape::Rectangle {
+                corners: [[left, low], [right - 0.3, low + 1.6]],
+                tint: Tint::Still,
+            });
         }
         shapes.push(text([elements as f64 / 2.0, low + 3.0], format!("strip {}: vl = {length}", strip + 1)));
     }
