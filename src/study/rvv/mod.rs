@@ -45,14 +45,12 @@ pub(super) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     }
     // Programs of a scene do not depend on its size.
     let programs: usize = cases.iter().step_by(counts.len()).map(|case| case.programs).sum();
-    // The page shows the first scene of the smallest size.
-    let shown = cases.first().map_or(0, |case| case.sections.len());
     let sections: Vec<SectionRow> =
         cases.into_iter().flat_map(|CaseRuns { sections, .. }| sections).collect();
     let frames = [
         summary_frame(&tools, programs, &sums, &sections),
         file_frame(&files, &sums),
-        section_frame("equations", &sections[..shown]),
+        section_frame("equations", &forces(&sections)),
         section_frame("sections", &sections),
         mnemonic_frame(&sections),
         silicon_frame()?,
@@ -105,6 +103,13 @@ fn file_frame(files: &[VectorFile], sums: &[RunSums]) -> ResultFrame {
             Purpose::ALL.map(|it| TableCell::Number(purpose_share(sum, it), 1))
         })
         .frame("files", "Executed instructions by purpose")
+}
+
+/// Rows of the forces of the first scene and size.
+fn forces(sections: &[SectionRow]) -> Vec<SectionRow> {
+    let Some(first) = sections.iter().find(|it| it.program.starts_with("forces")) else { return vec![] };
+    let is_shown = |it: &&SectionRow| (it.scene, &it.program, it.n) == (first.scene, &first.program, first.n);
+    sections.iter().filter(is_shown).cloned().collect()
 }
 
 fn section_frame(name: &str, sections: &[SectionRow]) -> ResultFrame {
