@@ -6,7 +6,7 @@ use crate::report::figure::{Drawing, DrawnShape, Picture, Tint};
 
 /// Elements of a box, and instructions in the picture.
 const BOX: usize = 8;
-const SHOWN: usize = 16;
+const SHOWN: usize = 14;
 /// Height of a line of text, and of a strip with its gap (widths of an element).
 const LINE: f64 = 2.2;
 const STRIP: f64 = 5.4;
