@@ -79,8 +79,8 @@ add = { value = [1, 2, 4, 8], provenance = "assumed", note = "a test" }
     let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
     assert_eq!(data["machines"][0]["machine"], "Mine");
     for (old, new, said) in [
-        ("value = 4,", "value = 3,", "mine.toml:7:9: `whole_registers.group` is 3"),
-        ("value = 256", "value = 100", "mine.toml:6:8: `whole_registers.vlen` is 100"),
+        ("value = 4,", "value = 3,", "mine.toml:7:1: `whole_registers.group` is 3"),
+        ("value = 256", "value = 100", "mine.toml:6:1: `whole_registers.vlen` is 100"),
         ("value = 256", "value = -64", "`whole_registers.vlen` is -64"),
         ("[1, 2, 4, 8]", "[1, 2, 4]", "mine.toml:9:"),
         ("[1, 2, 4, 8]", "[1, 2, 4, 0]", "`whole_registers.periods.add` is 0"),

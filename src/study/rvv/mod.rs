@@ -48,7 +48,7 @@ pub(super) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
     let sections: Vec<SectionRow> =
         cases.into_iter().flat_map(|CaseRuns { sections, .. }| sections).collect();
     let frames = [
-        summary_frame(&tools, programs, &sums, &sections),
+        summary_frame(&tools, [programs, counts.len()], &sums, &sections),
         file_frame(&files, &sums),
         section_frame("equations", &forces(&sections)),
         section_frame("sections", &sections),
@@ -62,7 +62,7 @@ pub(super) fn reproduce(lab: &StudyEnvironment<'_>, size: StudySize) -> Result<F
 
 fn summary_frame(
     tools: &Toolchain,
-    programs: usize,
+    [programs, lengths]: [usize; 2],
     sums: &[RunSums],
     sections: &[SectionRow],
 ) -> ResultFrame {
@@ -71,6 +71,8 @@ fn summary_frame(
     let counted = |of: fn(&SectionRow) -> u64| sections.iter().map(of).sum::<u64>();
     FrameBuilder::of([()])
         .count("programs", |()| programs)
+        .count("register files", |()| sums.len())
+        .count("lengths", |()| lengths)
         .count("runs", |()| all.runs)
         .count("bytes compared", |()| all.bytes)
         .count("bytes that differ", |()| all.differing)
