@@ -22,6 +22,11 @@ cd "$scratch"
 "$python" -m unittest discover -t . -s tests
 if "$python" -c 'import nbclient, ipykernel, matplotlib' 2>/dev/null; then
     for notebook in notebooks/*.ipynb; do
+        # Its clocks are those of the command.
+        if [[ $notebook == *own_kernel* && -z ${STRIPMINE:-} ]] && ! command -v stripmine >/dev/null; then
+            echo "SKIPPED: $notebook (no command stripmine)"
+            continue
+        fi
         timeout 300 "$python" -m jupyter execute --output="$scratch/$(basename "$notebook")" "$notebook"
     done
 else

@@ -17,6 +17,8 @@ def parameters(function):
         found.append((arguments.vararg.arg, "variadic positional", False))
     for it, default in zip(arguments.kwonlyargs, arguments.kw_defaults):
         found.append((it.arg, "keyword-only", default is not None))
+    if arguments.kwarg:
+        found.append((arguments.kwarg.arg, "variadic keyword", False))
     return [it for it in found if it[0] != "self"]
 
 

@@ -24,7 +24,7 @@ pub enum GroupSize {
     One,
     /// Two.
     Two,
-    /// Four: of 1,024 bits each they have the eight registers of 64 numbers of a CRAY-1, of which one is lost to predicates.
+    /// Four: with 1,024 bits each they give the eight registers of 64 numbers of a CRAY-1. Predicates take one of the eight.
     Four,
     /// Eight.
     Eight,
