@@ -30,7 +30,7 @@ import sys
 import tempfile
 
 from environment import said
-from provenance import refusal, write
+from provenance import provenance, refusal, write
 
 HERE = pathlib.Path(__file__).parent
 # Programs of the step by part, with the type of their kernel.
@@ -239,8 +239,7 @@ def measured(asked, folder):
     rows = []
     with open(next((folder / "validation").rglob("cases.csv"))) as file:
         for line in csv.DictReader(file):
-            case = line["case"] if "case" in line else line["run"]
-            matched = re.match(r"f64, NP = (\d+), ", case)
+            matched = re.match(r"f64, NP = (\d+), ", line["place"])
             if matched:
                 rows.append({
                     "particles": int(matched[1]), "execution": line["execution"], "phase": line["phase"],
@@ -264,6 +263,8 @@ def main():
     if missing or "avx512f" not in flags:
         print(f"skipped: {', '.join(missing) or 'a processor with AVX-512'} is missing")
         return 0
+    # The commit at the start.
+    provenance()
     asked.stripmine = asked.stripmine.resolve()
     if hasattr(os, "sched_setaffinity"):
         # Child processes inherit the core.
