@@ -195,6 +195,13 @@ impl OpCounts {
         Op::ALL.iter().filter(|op| op.class() == class).map(|&op| self.of(op)).sum()
     }
 
+    /// Floating-point operations as rates count them: sums, differences, products, quotients and roots.
+    #[inline]
+    pub fn flops(&self) -> u64 {
+        let counted = [OpClass::Add, OpClass::Multiply, OpClass::Divide, OpClass::SquareRoot];
+        counted.into_iter().map(|class| self.of_class(class)).sum()
+    }
+
     /// Number of all executions: NOP of BP93.
     #[inline]
     pub fn total(&self) -> u64 {
@@ -205,6 +212,13 @@ impl OpCounts {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn flops_are_sums_products_quotients_and_roots() {
+        let mut counts = OpCounts::default();
+        Op::ALL.iter().for_each(|&op| counts.record(op));
+        assert_eq!(counts.flops(), 5);
+    }
 
     #[test]
     fn mnemonics_and_class_names_are_distinct() {

@@ -2,7 +2,8 @@
 
 use super::study::{
     corrector, damping, density_cost, efficiency_table, identity, ladder, listing, mask, misprints,
-    model_validation, pipe_flow, precision, printed, scaling, searches, unequal, useful_work, wave_spectra,
+    model_validation, other_models, pipe_flow, precision, printed, scaling, searches, unequal, useful_work,
+    wave_spectra,
 };
 use crate::results::Item;
 
@@ -21,6 +22,7 @@ pub(super) const ITEMS: &[Item] = &[
     Item::of("searches", searches::reproduce),
     Item::of("unequal", unequal::reproduce),
     Item::of("validation", model_validation::reproduce),
+    Item::of("other-models", other_models::reproduce),
     Item::of("identity", identity::reproduce),
     Item::of("precision", precision::reproduce),
     Item::of("pipe-small", pipe_flow::small_pipe),

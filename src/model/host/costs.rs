@@ -138,6 +138,23 @@ impl StepArrays {
         StepArrays(indexed)
     }
 
+    /// Bytes of all arrays.
+    pub(crate) fn footprint(&self) -> f64 {
+        self.0.values().sum()
+    }
+
+    /// Bytes that a run of a program moves between memory or caches and the hardware's registers. A compiled loop moves each element of an array
+    /// once.
+    pub(crate) fn bytes(&self, outlines: &Outlines, n: usize, execution: Execution) -> f64 {
+        // Registers of the interpreter are in memory; their sizes are those of f64 with packed predicates.
+        let register_bytes = [8.0, 0.125, 4.0];
+        let of_strip = |(times, length): (f64, usize)| {
+            let [first, again] = self.moved(outlines, length as f64, register_bytes);
+            times * if execution == Execution::Chained { first.bytes } else { first.bytes + again.bytes }
+        };
+        strips(n, execution).map(of_strip).sum()
+    }
+
     /// Bytes that a program moves in a strip of `n` elements: of arrays that it visits for the first time, at the footprint of the whole
     /// step, and of arrays that it visits again or has in registers, of `register_bytes` by file.
     fn moved(&self, outlines: &Outlines, n: f64, register_bytes: [f64; 3]) -> [MovedBytes; 2] {
@@ -167,7 +184,7 @@ impl StepArrays {
         let registers: f64 = files.map(|(&count, bytes)| count as f64 * bytes * n).sum();
         let arrays: f64 = visited.iter().map(|(_, element)| n * element_bytes(element)).sum();
         [
-            MovedBytes { bytes: first, footprint: registers + self.0.values().sum::<f64>() },
+            MovedBytes { bytes: first, footprint: registers + self.footprint() },
             MovedBytes { bytes: again, footprint: registers + arrays },
         ]
     }
@@ -248,5 +265,7 @@ mod tests {
         assert_eq!(bytes(Execution::Strip(10)), 10.0 * (480.0 + 240.0));
         // A loop visits x and y once, in no registers.
         assert_eq!(bytes(Execution::Chained), 800.0 + 400.0);
+        assert_eq!(around.bytes(&program, 100, Execution::Chained), 800.0 + 400.0);
+        assert_eq!(around.bytes(&program, 100, Execution::Strip(10)), 10.0 * (480.0 + 240.0));
     }
 }

@@ -11,6 +11,7 @@ pub(super) mod listing;
 pub(super) mod mask;
 pub(super) mod misprints;
 pub(super) mod model_validation;
+pub(super) mod other_models;
 mod phase_times;
 pub(super) mod pipe_flow;
 pub(super) mod precision;
