@@ -113,7 +113,7 @@ class Studies(InFolder):
         # The error of the plan, plus the finite-size error of 400 discs.
         np.testing.assert_allclose(mean, [HENDERSON], rtol=0.02 + CLOSE)
         # The second plan uses the trials of the first.
-        self.assertIn("kept from", scene.explain("compressibility", 0.1, seconds=4)["origin"])
+        self.assertIn("cached on", scene.explain("compressibility", 0.1, seconds=4)["origin"])
 
     def test_errors_fall_with_the_square_root(self):
         out = self.folder / "out"

@@ -28,7 +28,7 @@ class Tables(unittest.TestCase):
         self.assertEqual((table["step"].dtype, table["time"].dtype), (np.uint64, np.float64))
         self.assertEqual((table.units["kinetic"], table.units["compressibility"]), ("energy", ""))
         self.assertIn("virial", table)
-        with self.assertRaisesRegex(KeyError, "no column of this table"):
+        with self.assertRaisesRegex(KeyError, "unknown column of this table"):
             table["virail"]
 
     def test_averages_match_the_summary(self):
