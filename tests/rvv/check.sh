@@ -26,6 +26,7 @@ while read -r name preset overrides; do
 done <<'SCENES'
 grains bench particles.count=60
 walls pipe-small
+linear bench particles.count=60 law.kind=linear
 printed dense-gas-printed particles.count=60
 lennard-jones langevin-dense particles.count=60 domain.sides=[10.0,11.0]
 gravity plummer particles.count=37

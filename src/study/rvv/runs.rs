@@ -7,8 +7,9 @@ use stripmine_kernels::emit::{GroupSize, Purpose};
 use stripmine_physics::method::{METHODS, load};
 
 /// Scenes: name, preset, overrides beside the number of particles, and the area of one, if the box has to follow their number.
-pub(super) const SCENES: [(&str, &str, &[&str], Option<f64>); 5] = [
+pub(super) const SCENES: [(&str, &str, &[&str], Option<f64>); 6] = [
     ("grains, our program", "bench", &[], None),
+    ("grains, linear springs", "bench", &["law.kind=linear"], None),
     ("grains, printed program", "dense-gas-printed", &[], None),
     ("Lennard-Jones", "langevin-dense", &["law.kind=lennard-jones"], Some(2.0)),
     ("WCA", "langevin-dense", &["law.kind=wca"], Some(2.0)),
