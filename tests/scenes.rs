@@ -423,6 +423,12 @@ fn scene_verbs_print_presets_keys_and_checks() {
     assert_eq!(keys.as_array().unwrap().len(), ENTRY.vocabulary.keys.keys().count());
     let table = String::from_utf8(stripmine(&["scene", "keys"]).stdout).unwrap();
     assert!(ENTRY.vocabulary.keys.keys().all(|key| table.contains(key.name)));
+    // A word that is no method: keys of all methods, each once.
+    let seeds = json(&["scene", "keys", "packing", "--json"]);
+    let seeds = seeds.as_array().unwrap();
+    assert!(seeds.iter().any(|key| key["key"] == "packing_fraction" && key["section"] == "particles"));
+    assert!(seeds.iter().all(|key| !key["methods"].as_array().unwrap().is_empty()), "{seeds:?}");
+    assert_eq!(stripmine(&["scene", "keys", "qwertz"]).status.code(), Some(2));
     let found = json(&[
         "scene",
         "check",

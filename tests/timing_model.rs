@@ -121,3 +121,79 @@ fn shipped_host_model_is_named_when_used() {
     let out = stripmine(&["validate-model", "--host", &path]).code(3);
     assert!(String::from_utf8_lossy(&out.get_output().stderr).contains("`format` is 3\n"));
 }
+
+/// By hand, for five values of three coordinates: 15 values are loaded and 12 stored, each sum is a flop; three products become velocities. A place of
+/// the mask loads two positions. The index is scattered as numbers of four bytes.
+#[test]
+fn sections_have_flops_and_bytes() {
+    let set = ["--set", "particles.count=40", "--set", "search.by=lattice"];
+    let out = stripmine(&[&["scene", "programs", "bench", "--json"][..], &set].concat()).success();
+    let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    let rows = data["operations"].as_array().unwrap();
+    let of = |section: &str| {
+        let row = rows.iter().find(|row| row["section"] == section).unwrap();
+        [&row["flops"], &row["bytes"]].map(|it| it.as_u64().unwrap())
+    };
+    assert_eq!(of("expansion"), [30, 8 * (15 + 12)]);
+    assert_eq!(of("velocities"), [3, 8 * 3]);
+    assert_eq!(of("distance")[1], 8 * 2 * 24);
+    assert_eq!(of("scatter")[1], 4);
+    let expansion = rows.iter().find(|row| row["section"] == "expansion").unwrap();
+    assert!((expansion["flop_a_byte"].as_f64().unwrap() - 30.0 / 216.0).abs() < 1e-12);
+    let out = stripmine(&[&["scene", "programs", "bench", "--csv"][..], &set].concat()).success();
+    let text = String::from_utf8(out.get_output().stdout.clone()).unwrap();
+    let mut lines = text.lines();
+    assert!(lines.next().unwrap().ends_with("flops,bytes,flop_a_byte"), "{text}");
+    assert!(lines.next().unwrap().starts_with("predictor,expansion,NP,42,57,30,0,30,216,"), "{text}");
+    assert_eq!(text.lines().count(), rows.len() + 1);
+}
+
+/// Every part of a scene is run in every execution; its sums are those of the scene's counts.
+#[test]
+fn scenes_are_timed_beside_the_host_model() {
+    let set = ["--set", "particles.count=40", "--set", "search.by=lattice"];
+    let out = stripmine(&[&["table", "bench", "--host", "--json", "--quiet"][..], &set].concat()).success();
+    let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    let rows = data["host"].as_array().unwrap();
+    assert_eq!(rows.len(), 3 * 8);
+    for row in rows {
+        assert!(row["measured"].as_f64().unwrap() > 0.0 && row["predicted"].as_f64().unwrap() > 0.0, "{row}");
+    }
+    // 63 operations and 33 flops a disc; whole rows of a hexagonal lattice hold 42.
+    let predictor = &rows[0];
+    assert_eq!(predictor["part"], "predictor 1");
+    assert!((predictor["nop_n"].as_f64().unwrap() - 63.0 * 42.0 * 1e-6).abs() < 1e-12, "{predictor}");
+    assert!((predictor["mflop"].as_f64().unwrap() - 33.0 * 42.0 * 1e-6).abs() < 1e-12, "{predictor}");
+    for (arguments, said) in [
+        (&["table", "--host"][..], "<TIMED>"),
+        (&["table", "bench"][..], "--host"),
+        (&["table", "hard-disks", "--host", "--quiet"][..], "no vector programs"),
+        (&["table", "bench", "--host=none.toml", "--quiet"][..], "none.toml"),
+    ] {
+        let out = stripmine(arguments).failure();
+        let text = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+        assert!(text.contains(said), "{said} is not in: {text}");
+    }
+}
+
+#[test]
+fn machines_state_fused_products_and_single_lanes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mine = MACHINE.replace(
+        "[start_up]",
+        "fma = { value = true, provenance = \"assumed\", note = \"a test\" }\n\
+         lanes_32 = { value = 2, provenance = \"assumed\", note = \"a test\" }\n[start_up]",
+    );
+    let path = file(&folder, &mine);
+    let out = stripmine(&["table", "--ladder", "--machine", &path, "--json"]).success();
+    let data: serde_json::Value = serde_json::from_slice(&out.get_output().stdout).unwrap();
+    let gains = &data["gains"][0];
+    assert_eq!(gains["has_them"], "fma, lanes of 32 bits");
+    // Start-ups are negligible on lattices of 4,000 cells, so that two lanes take nearly half of the time.
+    assert!((1.9..2.0).contains(&gains["gain_by_two_lanes_of_32_bits"].as_f64().unwrap()), "{gains}");
+    assert!((1.05..1.5).contains(&gains["gain_by_fma"].as_f64().unwrap()), "{gains}");
+    let wrong = file(&folder, &mine.replace("lanes_32 = { value = 2,", "lanes_32 = { value = 1.5,"));
+    let out = stripmine(&["table", "--machine", &wrong]).code(3);
+    let text = String::from_utf8_lossy(&out.get_output().stderr).into_owned();
+    assert!(text.contains("`lanes_32.value` is 1.5") || text.contains("`lanes_32` is 1.5"), "{text}");
+}

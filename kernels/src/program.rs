@@ -179,6 +179,9 @@ pub trait Runnable: Send + Sync {
     /// Operations executed, section by section.
     fn tally(&self) -> Vec<(&'static str, OpCounts)>;
 
+    /// Bytes of an element's loads and stores, section by section.
+    fn moved_bytes(&self) -> Vec<u64>;
+
     /// Vector instructions as an assembly listing.
     fn listing(&self) -> String;
 
@@ -225,6 +228,10 @@ where
 
     fn tally(&self) -> Vec<(&'static str, OpCounts)> {
         self.tape.tally()
+    }
+
+    fn moved_bytes(&self) -> Vec<u64> {
+        self.tape.moved_bytes()
     }
 
     fn listing(&self) -> String {

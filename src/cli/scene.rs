@@ -2,7 +2,7 @@
 
 use crate::console::{CommandFailure, Common, print, print_json, warn};
 use crate::emission::{EmissionError, ListingTarget, listing_text};
-use crate::frame::{FormattedTable, FrameBuilder};
+use crate::frame::{FormattedTable, FrameBuilder, csv};
 use crate::laboratory::programs::operation_frames;
 use crate::model::machine::MachineModel;
 use crate::model::machines;
@@ -15,6 +15,7 @@ use stripmine_kernels::backend::ListingLine;
 use stripmine_kernels::emit::GroupSize;
 use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load, method};
 use stripmine_physics::quoted;
+use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::run::forecast;
 use stripmine_physics::scene::{Fallback, Key, Preset, SECTIONS};
 
@@ -55,13 +56,16 @@ enum SceneAction {
         /// Prints the vector instructions as an assembly listing instead
         #[arg(long)]
         listing: bool,
+        /// Prints the operations, flops and bytes of every section as comma-separated values instead
+        #[arg(long, conflicts_with = "listing")]
+        csv: bool,
         #[command(flatten)]
         target: ListingTarget,
     },
-    /// Lists every key of a scene file: type, unit, default, meaning
+    /// Lists keys of a scene file: type, unit, default, meaning
     Keys {
-        /// Method of the scene; default: the first
-        method: Option<String>,
+        /// Method whose keys are listed, or a word in the names or meanings of keys of all methods; default: all keys of the first method
+        what: Option<String>,
     },
 }
 
@@ -71,13 +75,18 @@ impl SceneVerb {
             SceneAction::List => list(common, methods),
             SceneAction::Show { name } => show(name, common, methods),
             SceneAction::Check { scene, overrides } => check(scene, overrides, common, methods),
-            SceneAction::Programs { scene, overrides, machine, listing, target } => {
+            SceneAction::Programs { scene, overrides, machine, listing, csv, target } => {
                 let (prepared, _) = load(scene, overrides, methods)?;
                 let machine = machines::find(machine)?;
                 let listing = (*listing || target.size().is_some()).then(|| target.size());
-                programs(scene, &prepared, &machine, listing, common)
+                let output = match listing {
+                    Some(target) => ProgramOutput::Listing(target),
+                    None if *csv => ProgramOutput::Csv,
+                    None => ProgramOutput::Tables,
+                };
+                programs(scene, &prepared, &machine, output, common)
             }
-            SceneAction::Keys { method } => keys(method.as_deref(), common, methods),
+            SceneAction::Keys { what } => keys(what.as_deref(), common, methods),
         }
     }
 }
@@ -170,23 +179,38 @@ struct ProgramListing {
     text: String,
 }
 
+/// Output of the programs of a scene.
+enum ProgramOutput {
+    /// Operations and clock periods, as tables.
+    Tables,
+    /// Operations as comma-separated values.
+    Csv,
+    /// Instructions of the vector machine, or those of a processor with registers in groups.
+    Listing(Option<GroupSize>),
+}
+
 fn programs(
     name: &str,
     prepared: &Prepared,
     machine: &MachineModel,
-    listing: Option<Option<GroupSize>>,
+    output: ProgramOutput,
     common: &Common,
 ) -> Result<(), CommandFailure> {
     let (programs, note) = (prepared.model.programs(), prepared.model.programs_note());
     if programs.is_empty() {
         return Err(StudyError::NoPrograms(name.to_owned()).into());
     }
-    let Some(target) = listing else {
+    let ProgramOutput::Listing(target) = output else {
         let frames = operation_frames(name, &programs, std::slice::from_ref(machine));
         if common.json {
             let mut data = Map::from_iter(frames.iter().map(|frame| (frame.name.clone(), frame.json())));
             data.extend([("scene".to_owned(), json!(name)), ("note".to_owned(), json!(note))]);
             return print_json(&data);
+        }
+        if let ProgramOutput::Csv = output {
+            let mut bytes = vec![];
+            csv::write(&frames[0], &mut bytes).map_err(CommandFailure::writing("standard output"))?;
+            return print(&String::from_utf8_lossy(&bytes));
         }
         let [operations, clocks] = frames.each_ref().map(FormattedTable::from);
         let tables = [operations.notes(note), clocks];
@@ -216,8 +240,67 @@ fn programs(
     print(&(note + &listings.iter().map(text).collect::<String>()))
 }
 
-/// Key as data.
+/// A key of some methods.
 #[derive(Serialize)]
+struct MatchingKey {
+    methods: Vec<&'static str>,
+    #[serde(flatten)]
+    line: KeyLine,
+}
+
+/// Lists the keys of all methods with a word in their section, name or meaning.
+fn matching_keys(word: &str, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
+    let wanted = word.to_lowercase();
+    let mut found: Vec<MatchingKey> = vec![];
+    for entry in methods {
+        for line in entry.vocabulary.keys.keys().map(KeyLine::of) {
+            let text = format!("{}.{} {}", line.section, line.key, line.meaning).to_lowercase();
+            if !text.contains(&wanted) {
+                continue;
+            }
+            let is_same = |known: &&mut MatchingKey| known.line == line;
+            match found.iter_mut().find(is_same) {
+                Some(known) => known.methods.push(entry.name),
+                None => found.push(MatchingKey { methods: vec![entry.name], line }),
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(NoSuchKey(word.to_owned()).into());
+    }
+    if common.json {
+        return print_json(&found);
+    }
+    let table = FrameBuilder::of(&found)
+        .text("key", |it| match it.line.section {
+            "" => it.line.key.to_owned(),
+            section => format!("{section}.{}", it.line.key),
+        })
+        .text("methods", |it| {
+            if it.methods.len() == methods.len() { "all".to_owned() } else { it.methods.join(", ") }
+        })
+        .text("value", |it| &it.line.r#type)
+        .text("default", |it| it.line.default.unwrap_or("required"))
+        .text("meaning", |it| it.line.meaning)
+        .table("keys", format!("Keys with `{word}` in their name or meaning"));
+    print(&terminal::render(&table))
+}
+
+/// A word that is neither a method nor in a key.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no method is called `{0}`, and no key has it in its name or meaning; `stripmine scene keys` lists the keys of a method"
+)]
+struct NoSuchKey(String);
+
+impl Reported for NoSuchKey {
+    fn class(&self) -> ErrorClass {
+        ErrorClass::Usage
+    }
+}
+
+/// Key as data.
+#[derive(PartialEq, Serialize)]
 struct KeyLine {
     section: &'static str,
     key: &'static str,
@@ -252,7 +335,7 @@ fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), Com
         Some(name) => method(methods, name),
         None => methods.first().copied(),
     };
-    let Some(entry) = entry else { return print("") };
+    let Some(entry) = entry else { return matching_keys(name.unwrap_or_default(), common, methods) };
     let lines: Vec<KeyLine> = entry.vocabulary.keys.keys().map(KeyLine::of).collect();
     if common.json {
         return print_json(&lines);

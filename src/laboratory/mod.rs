@@ -3,6 +3,7 @@
 //! A study is a function from parameters to datasets; it becomes an item of the report or a verb. A method runs without a line here.
 
 pub(crate) mod hard_disks;
+pub(crate) mod host_table;
 pub(crate) mod langevin;
 pub(crate) mod lattice_md;
 mod mixtures;

@@ -36,6 +36,9 @@ pub(crate) fn operation_frames(
             .count("operations (NOP)", |it| it.operations)
             .count("of them computing", |it| it.computing)
             .count("divisions and roots", |it| it.divisions_and_roots)
+            .count("flops", |it| it.flops)
+            .count("bytes", |it| it.bytes)
+            .number("flop a byte", 2, |it| (it.bytes > 0).then(|| it.intensity()))
             .frame("operations", format!("{scene}: whole-array operations of a step")),
         FrameBuilder::of(clocks)
             .text("machine", |(machine, ..)| machine.title())

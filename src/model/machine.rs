@@ -89,6 +89,10 @@ pub struct MachineModel {
     pub(super) clock_period_ns: SourcedNumber,
     /// True if a result feeds the next instruction element by element.
     chaining: Option<SourcedValue<bool>>,
+    /// True if one instruction takes a product and a sum.
+    fma: Option<SourcedValue<bool>>,
+    /// Elements of 32 bits that take the place of one of 64 bits.
+    pub(super) lanes_32: Option<SourcedNumber>,
     /// Clock periods per strip.
     pub(super) loop_overhead: Option<SourcedNumber>,
     /// Vector registers; none where vectors have any length.
@@ -106,6 +110,15 @@ pub struct MachineModel {
     /// Complete expansions, down to classes that the machine executes.
     #[serde(skip)]
     pub(super) executed: BTreeMap<OpClass, ClassCounts>,
+}
+
+/// A feature that our own executions do not use, or only in single precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum MachineFeature {
+    /// Instructions that take a product and a sum.
+    Fma,
+    /// Two or more elements of 32 bits in the place of one of 64.
+    Lanes32,
 }
 
 /// Key of the start-up of all other classes.
@@ -180,6 +193,7 @@ impl MachineModel {
             add(format!("start_up.{name}"), self.start_up.get(name));
         }
         add("loop_overhead".to_owned(), self.loop_overhead.as_ref());
+        add("lanes_32".to_owned(), self.lanes_32.as_ref());
         for (name, unit) in &self.units {
             add(format!("units.{name}.count"), Some(&unit.count));
             add(format!("units.{name}.rate"), unit.rate.as_ref());
@@ -190,7 +204,9 @@ impl MachineModel {
         add("memory.gather_rate".to_owned(), memory.and_then(|it| it.gather_rate.as_ref()));
         let whole = self.whole_registers.iter().flat_map(WholeRegisters::entries);
         all.extend(whole.map(|(name, provenance)| (name, Some(provenance))));
-        all.push(("chaining".to_owned(), self.chaining.as_ref().map(|it| it.provenance)));
+        for (name, it) in [("chaining", &self.chaining), ("fma", &self.fma)] {
+            all.push((name.to_owned(), it.as_ref().map(|it| it.provenance)));
+        }
         for name in OpClass::ALL.iter().map(|class| class.name()) {
             all.push((format!("expansions.{name}"), self.expansions.get(name).map(|it| it.provenance)));
         }
@@ -217,6 +233,31 @@ impl MachineModel {
     /// True if a result feeds the next instruction element by element.
     pub(crate) fn chains(&self) -> bool {
         self.chaining.as_ref().is_some_and(|chaining| chaining.value)
+    }
+
+    /// True if one instruction takes a product and a sum. Our own executions never do: it would change bits.
+    pub(crate) fn fuses(&self) -> bool {
+        self.fma.as_ref().is_some_and(|fma| fma.value)
+    }
+
+    /// Elements of a type that take the place of one of 64 bits.
+    pub(crate) fn lanes(&self, element: &str) -> f64 {
+        self.lanes_32.as_ref().filter(|_| element == "f32").map_or(1.0, |lanes| lanes.value)
+    }
+
+    /// Copy of the machine with or without a feature, to see what it gains: two elements of 32 bits in the place of one of 64.
+    #[must_use]
+    pub(crate) fn with_feature(&self, feature: MachineFeature, is_present: bool) -> MachineModel {
+        let mut machine = self.clone();
+        let (provenance, note) = (NumberProvenance::Assumed, String::new());
+        match feature {
+            MachineFeature::Fma => machine.fma = Some(SourcedValue { value: is_present, provenance, note }),
+            MachineFeature::Lanes32 => {
+                let value = if is_present { 2.0 } else { 1.0 };
+                machine.lanes_32 = Some(SourcedValue { value, provenance, note });
+            }
+        }
+        machine
     }
 
     /// Resource that an instruction of `class` occupies; none where the machine does not state it.

@@ -132,7 +132,9 @@ fn unknown_class_error(name: &str, path: &str) -> Option<String> {
 fn number_error(value: f64, of: &[&str]) -> Option<String> {
     let (most, is_counted) = match of.last() {
         Some(&"year") => (9999.0, true),
-        Some(&"count" | &"length" | &"load_ports" | &"store_ports" | &"vlen" | &"group") => (1e6, true),
+        Some(&"count" | &"length" | &"load_ports" | &"store_ports" | &"vlen" | &"group" | &"lanes_32") => {
+            (1e6, true)
+        }
         _ => (1e12, false),
     };
     let expected = match value {

@@ -1,7 +1,7 @@
 //! Golden values of the sources, and properties of every clock.
 
 use super::*;
-use crate::model::machine::{MachineModel, NumberProvenance};
+use crate::model::machine::{MachineFeature, MachineModel, NumberProvenance};
 use crate::model::machines::{names, preset};
 use stripmine_kernels::backend::tape::{ArrayReference, Outline, RegisterKind, RegisterName, VectorLocation};
 use stripmine_kernels::isa::Array;
@@ -234,4 +234,40 @@ fn measured_machines_are_mostly_sourced() {
         sourced += if provenance == NumberProvenance::Sourced { numbers } else { 0 };
     }
     assert!(10 * sourced >= 9 * all, "{sourced} of {all}");
+}
+
+/// By hand: DAXPY's product feeds its sum, so that five operations become four; a product that is read twice, or by another product, stays.
+#[test]
+fn fused_products_leave_the_program() {
+    let fused = daxpy().fused();
+    assert_eq!(fused.order().unwrap().len(), 4);
+    let machine = preset("sx-aurora").unwrap();
+    let [without, with] = [false, true].map(|has| machine.with_feature(MachineFeature::Fma, has));
+    let clocks = |machine: &MachineModel| Clock::Registers.clocks(machine, &daxpy(), 256);
+    // Start-ups of 10, a loop of 15, and 256 elements for each instruction.
+    assert_eq!(clocks(&without), 15.0 + 5.0 * (10.0 + 256.0));
+    assert_eq!(clocks(&with), 15.0 + 4.0 * (10.0 + 256.0));
+    assert_eq!(Clock::Paper.clocks(&without, &daxpy(), 256), Clock::Paper.clocks(&with, &daxpy(), 256));
+    let product = instruction(Op::Multiply, &[register(0), register(1)], register(2));
+    for readers in [
+        vec![
+            instruction(Op::Add, &[register(2), register(0)], register(3)),
+            instruction(Op::Add, &[register(2), register(1)], register(4)),
+        ],
+        vec![instruction(Op::Multiply, &[register(2), register(0)], register(3))],
+        vec![instruction(Op::Add, &[register(2), register(2)], register(3))],
+        // The register of a factor has another value when the sum is taken.
+        vec![
+            instruction(Op::Load, &[array(Array::X)], register(0)),
+            instruction(Op::Add, &[register(2), register(1)], register(3)),
+        ],
+    ] {
+        let order: Vec<Outline> = [product.clone()].into_iter().chain(readers).collect();
+        let work = ProgramWork::in_order(order.clone());
+        assert_eq!(work.fused().order().unwrap(), order);
+    }
+    // A sum of two products takes one of them.
+    let other = instruction(Op::Multiply, &[register(3), register(4)], register(5));
+    let sum = instruction(Op::Add, &[register(2), register(5)], register(6));
+    assert_eq!(ProgramWork::in_order(vec![product, other, sum]).fused().order().unwrap().len(), 2);
 }

@@ -21,6 +21,10 @@ pub struct SectionCounts {
     pub computing: u64,
     /// Divisions and square roots among them.
     pub divisions_and_roots: u64,
+    /// Floating-point operations: sums, differences, products, quotients, roots.
+    pub flops: u64,
+    /// Bytes that loads and stores move for an element.
+    pub bytes: u64,
 }
 
 impl SectionCounts {
@@ -28,8 +32,8 @@ impl SectionCounts {
     pub fn of(programs: &[VectorProgram]) -> Vec<SectionCounts> {
         let mut counted: Vec<SectionCounts> = vec![];
         for it in programs {
-            for (section, counts) in it.program.tally() {
-                let entry = SectionCounts::section(it, section, &counts);
+            for ((section, counts), bytes) in it.program.tally().into_iter().zip(it.program.moved_bytes()) {
+                let entry = SectionCounts::section(it, section, &counts, bytes);
                 let is_same = |known: &&mut SectionCounts| {
                     (known.part, known.section, known.length, known.n) == (it.part, section, it.length, it.n)
                 };
@@ -38,6 +42,8 @@ impl SectionCounts {
                         known.operations += entry.operations;
                         known.computing += entry.computing;
                         known.divisions_and_roots += entry.divisions_and_roots;
+                        known.flops += entry.flops;
+                        known.bytes += entry.bytes;
                     }
                     None => counted.push(entry),
                 }
@@ -46,7 +52,12 @@ impl SectionCounts {
         counted
     }
 
-    fn section(it: &VectorProgram, section: &'static str, counts: &OpCounts) -> SectionCounts {
+    /// Floating-point operations a byte.
+    pub fn intensity(&self) -> f64 {
+        self.flops as f64 / self.bytes as f64
+    }
+
+    fn section(it: &VectorProgram, section: &'static str, counts: &OpCounts, bytes: u64) -> SectionCounts {
         let class = |class: OpClass| counts.of_class(class);
         SectionCounts {
             part: it.part,
@@ -56,6 +67,8 @@ impl SectionCounts {
             operations: it.times * counts.total(),
             computing: it.times * counts.filtered(|op| !op.class().moves_data()).total(),
             divisions_and_roots: it.times * (class(OpClass::Divide) + class(OpClass::SquareRoot)),
+            flops: it.times * counts.flops(),
+            bytes: it.times * bytes,
         }
     }
 }

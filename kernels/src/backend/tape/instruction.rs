@@ -2,7 +2,7 @@
 
 use crate::isa::list::for_each_op;
 use crate::isa::op::{BinaryOp, CompareOp, ConnectiveOp, NegationOp, UnaryOp};
-use crate::isa::{Array, Element, Op};
+use crate::isa::{Array, Element, Op, Storage};
 
 /// Register files of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -58,6 +58,13 @@ pub struct ArrayReference {
     pub element: &'static str,
     /// Distance in elements from the own one.
     pub shift: isize,
+}
+
+impl ArrayReference {
+    /// Bytes of an element.
+    pub fn element_bytes(&self) -> u64 {
+        if self.element == <f64 as Storage>::NAME { 8 } else { 4 }
+    }
 }
 
 /// An operand of an action, by its kind in the table of operations.

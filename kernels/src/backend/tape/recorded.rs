@@ -70,6 +70,16 @@ impl<L: Element> Tape<L> {
         tally
     }
 
+    /// Bytes of an element's loads and stores, section by section as [`Tape::tally`]: what a machine moves that keeps nothing but registers.
+    pub fn moved_bytes(&self) -> Vec<u64> {
+        let mut moved = vec![None; self.sections.len()];
+        for instruction in &self.instructions {
+            let bytes = instruction.reference().map_or(0, |it| it.element_bytes());
+            *moved[instruction.section].get_or_insert(0) += bytes;
+        }
+        moved.into_iter().flatten().collect()
+    }
+
     /// Arrays that the kernel accesses, with the range of shifts.
     pub fn footprint(&self) -> Footprint {
         let mut footprint = Footprint::default();

@@ -1,14 +1,17 @@
 //! Clock periods of one step by every clock model, from the trivial one to chaining and memory ports.
 
-use super::efficiency_table::{TableScene, TableSceneError, programs_of_step};
+use super::efficiency_table::{TableScene, TableSceneError, programs_in_precision, programs_of_step};
 use crate::console::CommandFailure;
 use crate::frame::{FrameBuilder, ResultFrame};
 use crate::model::clock::{Clock, MemoryModel, ProgramWork, convoys};
-use crate::model::machine::MachineModel;
+use crate::model::machine::{MachineFeature, MachineModel};
 use crate::model::machines;
 use crate::results::{FinishedItem, StudyEnvironment, StudySize};
-use stripmine_physics::method::lattice_md::Part;
+use stripmine_physics::method::lattice_md::{Part, ProgramVersion, StepProgram};
+use stripmine_physics::scene::Precision;
 
+/// The clock with all properties of a machine.
+const LAST: Clock = Clock::WholeRegisters;
 /// Machines of the report.
 const MACHINES: [&str; 3] = ["cray-y-mp-el", "cray-1", "sx-aurora"];
 
@@ -22,18 +25,23 @@ pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<Finish
         .text("clock", |clock| clock.name())
         .text("meaning", |clock| clock.meaning())
         .frame("clocks", "What each clock charges");
-    Ok(FinishedItem::of(rungs.chain([summary(&ladders), meanings])))
+    Ok(FinishedItem::of(rungs.chain([summary(&ladders), gains(&ladders), meanings])))
 }
 
 /// Item of one machine: rungs, convoys, summary.
 pub(crate) fn ladder(question: &TableScene, machine: &MachineModel) -> Result<FinishedItem, TableSceneError> {
     let ladder = Ladder::of(question, machine)?;
-    Ok(FinishedItem::of([ladder.rungs("ladder".into()), ladder.convoys(), summary(&[ladder])]))
+    let ladders = [ladder];
+    let [ladder] = &ladders;
+    let frames = [ladder.rungs("ladder".into()), ladder.convoys(), summary(&ladders), gains(&ladders)];
+    Ok(FinishedItem::of(frames))
 }
 
 /// Programs of a step, and the machine whose clock periods are counted.
 struct Ladder<'m> {
     works: Vec<(Part, ProgramWork, u64)>,
+    /// The same in single precision; none for the printed program, which has one precision.
+    single: Vec<(Part, ProgramWork, u64)>,
     discs: usize,
     cells: usize,
     machine: &'m MachineModel,
@@ -42,10 +50,28 @@ struct Ladder<'m> {
 impl Ladder<'_> {
     fn of<'m>(question: &TableScene, machine: &'m MachineModel) -> Result<Ladder<'m>, TableSceneError> {
         let (programs, lengths) = programs_of_step(question)?;
-        let work = programs.iter().map(|step| {
-            (step.part, ProgramWork::of(step.program.as_ref()), lengths.range(step.length).len() as u64)
-        });
-        Ok(Ladder { works: work.collect(), discs: lengths.discs, cells: lengths.cells, machine })
+        let works = |programs: &[StepProgram]| {
+            let work = programs.iter().map(|step| {
+                (step.part, ProgramWork::of(step.program.as_ref()), lengths.range(step.length).len() as u64)
+            });
+            work.collect()
+        };
+        let single = match question.choice.text {
+            ProgramVersion::Ours => programs_in_precision(question, Precision::F32)?.0,
+            ProgramVersion::Printed => vec![],
+        };
+        let (works, single) = (works(&programs), works(&single));
+        Ok(Ladder { works, single, discs: lengths.discs, cells: lengths.cells, machine })
+    }
+
+    /// Ratio of the clock periods of a step by the last clock without a feature to those with it; none without programs in single precision.
+    fn gain(&self, feature: MachineFeature) -> Option<f64> {
+        let works = if feature == MachineFeature::Fma { &self.works } else { &self.single };
+        let step = |is_present: bool| -> f64 {
+            let machine = self.machine.with_feature(feature, is_present);
+            works.iter().map(|(_, work, n)| LAST.clocks(&machine, work, *n)).sum()
+        };
+        (!works.is_empty()).then(|| step(false) / step(true))
     }
 
     fn of_part(&self, part: Part) -> impl Iterator<Item = &(Part, ProgramWork, u64)> {
@@ -110,6 +136,20 @@ impl Ladder<'_> {
             .count("convoys with memory ports", |part| count(*part, MemoryModel::Ports).0)
             .frame("convoys", "Convoys: instructions that run at once")
     }
+}
+
+/// Gains of features that our own executions do not use, so that their bits stay the same.
+fn gains(ladders: &[Ladder<'_>]) -> ResultFrame {
+    FrameBuilder::of(ladders)
+        .text("machine", |it| it.machine.title())
+        .text("has them", |it| {
+            let own = [(it.machine.fuses(), "fma"), (it.machine.lanes("f32") > 1.0, "lanes of 32 bits")];
+            let own: Vec<&str> = own.into_iter().filter(|(has, _)| *has).map(|(_, name)| name).collect();
+            if own.is_empty() { "neither".to_owned() } else { own.join(", ") }
+        })
+        .number("gain by fma", 3, |it| it.gain(MachineFeature::Fma))
+        .number("gain by two lanes of 32 bits", 3, |it| it.gain(MachineFeature::Lanes32))
+        .frame("gains", "Time of a step by the last clock without a feature, over the time with it")
 }
 
 fn summary(ladders: &[Ladder<'_>]) -> ResultFrame {

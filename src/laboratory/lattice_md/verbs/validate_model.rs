@@ -61,7 +61,10 @@ const ROUNDS: usize = 12;
 const CALIBRATION: f64 = 0.4;
 
 /// Model of a host file, or the model shipped with the program; and a description of its origin.
-fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String), CommandFailure> {
+pub(super) fn host_model(
+    file: Option<&Path>,
+    common: &Common,
+) -> Result<(HostModel, String), CommandFailure> {
     let note = |warns: bool, words: fmt::Arguments<'_>| match common.quiet {
         true => (),
         false if warns => warn(words),
@@ -73,7 +76,7 @@ fn host_model(file: Option<&Path>, common: &Common) -> Result<(HostModel, String
         note(
             false,
             format_args!(
-                "no --host given: using the model shipped with the program, of {title}; `stripmine calibrate` makes one for this host"
+                "using the model shipped with the program, of {title}; `stripmine calibrate` makes one for this host"
             ),
         );
         let whose = format!("the shipped model of {title}");

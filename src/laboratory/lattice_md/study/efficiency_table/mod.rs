@@ -4,7 +4,8 @@ mod conventions;
 mod question;
 
 pub(crate) use question::{
-    TableFeatures, TableScene, TableSceneError, counting_model, programs_of_step, scene_model,
+    TableFeatures, TableScene, TableSceneError, counting_model, programs_in_precision, programs_of_step,
+    scene_model,
 };
 
 use crate::console::CommandFailure;

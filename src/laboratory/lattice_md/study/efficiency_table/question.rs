@@ -168,7 +168,15 @@ pub(crate) fn scene_model(question: &TableScene) -> Result<GranularModel, TableS
 pub(crate) fn programs_of_step(
     question: &TableScene,
 ) -> Result<(Vec<StepProgram>, Lengths), TableSceneError> {
+    programs_in_precision(question, Precision::F64)
+}
+
+/// As [`programs_of_step`], in another precision.
+pub(crate) fn programs_in_precision(
+    question: &TableScene,
+    precision: Precision,
+) -> Result<(Vec<StepProgram>, Lengths), TableSceneError> {
     let model = scene_model(question)?;
     let lengths = Lengths::new(&model, question.particles, question.particles);
-    Ok((programs(&model, Precision::F64), lengths))
+    Ok((programs(&model, precision), lengths))
 }
