@@ -242,7 +242,7 @@ fn plans_use_the_scene_as_first_read() {
 fn long_plans_run_only_when_confirmed() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let long = explain(folder, &[&GAS[..], &["--error", "0.001%", "--analyze"]].concat());
+    let long = explain(folder, &[&GAS[..], &["--error", "0.001%", "--limit", "1e9", "--analyze"]].concat());
     ends_with(&long, 2, &["was not executed", "takes about", "--yes"]);
     let page = String::from_utf8_lossy(&long.stdout).into_owned();
     assert!(

@@ -10,8 +10,8 @@ const WORDS: usize = 120;
 /// Largest number of decimals in a sentence.
 const DECIMALS: usize = 9;
 /// Largest sizes of the pages in bytes: of the short one for each item, plus [`FAILED`] for each failed claim on its first screen. The page with
-/// charts grew by 80 kB for six items of ISO99, BP93 and PWP with their charts, by 60 kB for five more, and by 10 kB for the programs on RISC-V.
-const PAGES: [(&str, usize); 2] = [("README.md", 1_100), ("index.html", 1_350_000)];
+/// charts grew by 80 kB for six items of ISO99, BP93 and PWP with their charts, by 60 kB for five more, and by 20 kB for the programs on RISC-V and the models of others.
+const PAGES: [(&str, usize); 2] = [("README.md", 1_100), ("index.html", 1_370_000)];
 const FAILED: usize = 400;
 /// Further bytes of the page with charts for each claim.
 const CLAIM: usize = 700;
