@@ -169,6 +169,13 @@ impl SceneValues {
         self.applies(key.used) == Some(true)
     }
 
+    /// True for the seed of a start file whose velocities no key asks to draw.
+    pub fn is_idle(&self, key: &Key) -> bool {
+        let is_given = |name: &str| self.values.contains_key(&("particles", name));
+        let draws = ["temperature", "speed", "virial"].into_iter().any(is_given);
+        key.id() == ("particles", "seed") && is_given("file") && !draws
+    }
+
     /// True if a key was given with an invalid value.
     pub(crate) fn is_faulty(&self, key: &Key) -> bool {
         self.faulty.contains(&key.id())

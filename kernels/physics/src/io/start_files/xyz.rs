@@ -1,0 +1,32 @@
+//! XYZ, extended by `key=value` in the second line or plain.
+
+use super::{
+    QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, is_count, lines,
+};
+use crate::io::extxyz::{ParsedFrame, read_start};
+use std::path::Path;
+
+pub(super) static FORMAT: StartFormat = StartFormat {
+    name: "XYZ (extended or plain)",
+    recognises: |head| lines(head).find(|line| !line.is_empty()).is_some_and(is_count),
+    read,
+    columns: ["velo:R:3 (or velo:R:2, momenta:R:3)", "radius:R:1", "mass:R:1 (or masses:R:1)"],
+};
+
+fn read(path: &Path, request: StartRequest) -> Result<StartFrame, StartFileError> {
+    let ParsedFrame { frame, columns, line } = read_start(path, request.frame, request.is_planar)?
+        .map_err(|count| StartFileError::beyond(path, request, count))?;
+    let source = |is_there| if is_there { QuantitySource::Stated } else { QuantitySource::Missing };
+    let cell =
+        StartBox { corner: frame.origin, sides: frame.cell, is_movable: false, precision: StartBox::DOUBLE };
+    Ok(StartFrame {
+        particles: frame.particles,
+        cell: frame.cell.iter().all(|side| side.is_finite()).then_some(cell),
+        periodic: frame.periodic,
+        sources: [columns.velocity, columns.radius, columns.mass].map(source),
+        has_momenta: columns.has_momenta_only,
+        line: Some(line),
+        columns: FORMAT.columns,
+        has_raised_ids: frame.has_raised_ids,
+    })
+}
