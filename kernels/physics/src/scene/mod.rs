@@ -4,6 +4,7 @@
 //! text reports all mistakes at once, each with its location ([`SceneValues`], [`SceneErrors`]). One function for each section binds its fields to its
 //! keys, both for reading and for writing ([`Binding`]). This module names no method: it contains the keys that several of them share.
 
+mod arrays;
 mod binding;
 mod disc_keys;
 mod discs;
@@ -27,6 +28,7 @@ mod warning;
 pub use crate::input::{
     InputError as SceneError, InputErrors as SceneErrors, MistakeKind, Spot, TextLocation,
 };
+pub use arrays::NumberArray;
 pub use binding::{Binding, ReadBinding, Write};
 pub(crate) use disc_keys::{
     CLEAR_WIDTH, FILE, FILL_HEIGHT, MASS, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SPEED, WALL_AMPLITUDE,

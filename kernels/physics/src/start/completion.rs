@@ -20,6 +20,36 @@ pub(crate) struct StartCompletion<'s> {
 }
 
 impl StartCompletion<'_> {
+    /// Checks that keys supply every quantity that the file lacks; each comes with its key, and true if the key is given.
+    ///
+    /// # Errors
+    /// One error that names all columns and keys.
+    pub(crate) fn check(&self, quantities: &[(StartQuantity, &Key, bool)]) -> Result<(), SceneError> {
+        let is_missing = |&&(quantity, _, is_given): &&(StartQuantity, &Key, bool)| {
+            self.frame.source(quantity) == QuantitySource::Missing && !is_given
+        };
+        let missing: Vec<_> = quantities.iter().filter(is_missing).collect();
+        let Some((last, ..)) = missing.last() else { return Ok(()) };
+        let list = |of: &dyn Fn(&(StartQuantity, &Key, bool)) -> String, between: &str| {
+            missing.iter().map(|it| of(it)).collect::<Vec<_>>().join(between)
+        };
+        let columns = list(&|(quantity, ..)| self.frame.column(*quantity).to_owned(), ", no ");
+        let keys = list(&|(_, key, _)| format!("`{}`", key.path()), ", ");
+        let line = self.frame.line.map_or_else(String::new, |line| format!(":{line}"));
+        let are = if missing.len() == 1 { "is" } else { "are" };
+        let message = format!("the start file {}{line} has no {columns}; {keys} {are} not given", self.path);
+        let error = self.values.spot(self.file).error(MistakeKind::Missing, message);
+        let error = error.expecting(list(&|(_, key, _)| key.expected(), "; "));
+        Err(error.advising(match last {
+            StartQuantity::Velocity => {
+                format!("give it in [particles] ({}), or add the column to the file", self.rest)
+            }
+            StartQuantity::Radius | StartQuantity::Mass => {
+                "give it in [particles], or add the column to the file".to_owned()
+            }
+        }))
+    }
+
     /// Fills in a quantity that the file lacks with the value of its key, or with that of the file's format.
     pub(crate) fn quantity(
         &self,
@@ -41,7 +71,7 @@ impl StartCompletion<'_> {
     /// True if the file lacks a quantity and a key supplies it.
     ///
     /// # Errors
-    /// If both have it, or neither.
+    /// If both have it.
     pub(crate) fn is_supplied(
         &self,
         (quantity, key): (StartQuantity, &Key),
@@ -57,7 +87,8 @@ impl StartCompletion<'_> {
             }
             (QuantitySource::Default(value), None) => {
                 let message = format!(
-                    "the start file {path} has no {column}; by its format the value is {}",
+                    "the start file {path} has no {column}; by its format the {} is {}",
+                    quantity.noun(),
                     significant(value, 3)
                 );
                 warnings.push(warning(
@@ -68,28 +99,9 @@ impl StartCompletion<'_> {
                 ));
                 Ok(false)
             }
-            (QuantitySource::Missing, None) => Err(self.missing(quantity, key)),
-            (QuantitySource::Stated, None) => Ok(false),
+            (QuantitySource::Stated | QuantitySource::Missing, None) => Ok(false),
             (_, Some(_)) => Ok(true),
         }
-    }
-
-    /// Error for a quantity that neither the file nor a key has.
-    fn missing(&self, quantity: StartQuantity, key: &Key) -> SceneError {
-        let line = self.frame.line.map_or_else(String::new, |line| format!(":{line}"));
-        let message = format!(
-            "the start file {}{line} has no {}, and `{}` is not given",
-            self.path,
-            self.frame.column(quantity),
-            key.path()
-        );
-        let error = self.values.spot(self.file).error(MistakeKind::Missing, message);
-        let error =
-            error.expecting(format!("{} in [{}], or the column in the file", key.expected(), key.section));
-        error.advising(match quantity {
-            StartQuantity::Velocity => self.rest,
-            StartQuantity::Radius | StartQuantity::Mass => key.doc,
-        })
     }
 }
 

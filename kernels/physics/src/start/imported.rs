@@ -63,6 +63,12 @@ pub(super) fn read_start(
         rest: "temperature = 0.0 starts at rest",
     };
     let supplied = file.supplied;
+    let speed: &Key = if stated.values.is_given(&SPEED) { &SPEED } else { &TEMPERATURE };
+    complete.check(&[
+        (StartQuantity::Radius, &RADIUS, supplied.radius.is_some()),
+        (StartQuantity::Mass, &MASS, supplied.mass.is_some()),
+        (StartQuantity::Velocity, speed, supplied.speed.is_some()),
+    ])?;
     let radius = (StartQuantity::Radius, &RADIUS);
     complete.quantity(radius, supplied.radius, &mut discs, warnings, |disc| &mut disc.radius)?;
     complete
@@ -70,18 +76,17 @@ pub(super) fn read_start(
     if frame.has_momenta {
         discs.iter_mut().for_each(|disc| disc.velocity = disc.velocity.map(|p| p / disc.mass));
     }
-    let key: &Key = if stated.values.is_given(&SPEED) { &SPEED } else { &TEMPERATURE };
     match (
-        complete.is_supplied((StartQuantity::Velocity, key), supplied.speed.map(|_| 0.0), warnings)?,
+        complete.is_supplied((StartQuantity::Velocity, speed), supplied.speed.map(|_| 0.0), warnings)?,
         supplied.speed,
     ) {
-        (true, Some(speed)) => {
+        (true, Some(drawn)) => {
             let is_balanced = domain.periodic() == [true; 2] && discs.len() > 1;
             set_gaussian_velocities(&mut discs, supplied.seed, is_balanced, |disc| {
-                speed.deviation(disc.mass)
+                drawn.deviation(disc.mass)
             });
             if supplied.is_exact {
-                scale_velocities(&mut discs, speed, stated.conserved);
+                scale_velocities(&mut discs, drawn, stated.conserved);
             }
         }
         _ if stated.values.is_given(&SEED) => {

@@ -19,9 +19,9 @@ pub(super) static FORMAT: StartFormat = StartFormat {
     },
     read,
     columns: [
-        "the section Velocities",
-        "diameter, of `Atoms # sphere`",
-        "density, of `Atoms # sphere`, or the section Masses",
+        "section Velocities",
+        "diameters (Atoms # sphere)",
+        "densities (Atoms # sphere), or section Masses",
     ],
 };
 

@@ -64,6 +64,17 @@ pub enum StartQuantity {
     Mass,
 }
 
+impl StartQuantity {
+    /// Noun for messages.
+    pub(crate) fn noun(self) -> &'static str {
+        match self {
+            StartQuantity::Velocity => "velocity",
+            StartQuantity::Radius => "radius",
+            StartQuantity::Mass => "mass",
+        }
+    }
+}
+
 /// Source of a quantity of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuantitySource {

@@ -17,11 +17,7 @@ pub(super) static FORMAT: StartFormat = StartFormat {
         is_count(count) && numbers.is_some_and(|numbers| numbers.len() == 3)
     },
     read,
-    columns: [
-        "velocities, which .sph never has",
-        "the radius, the fifth of each row",
-        "masses, which .sph never has",
-    ],
+    columns: ["velocities", "radii", "masses"],
 };
 
 fn read(path: &Path, request: StartRequest) -> Result<StartFrame, StartFileError> {

@@ -6,7 +6,7 @@ use super::starts::{InitialBody, stir};
 use crate::io::start_files::{StartFrame, StartQuantity};
 use crate::particles::ParticleKind;
 use crate::quoted;
-use crate::scene::{Key, MistakeKind, SceneError, SceneValues, Warning};
+use crate::scene::{MistakeKind, SceneError, SceneValues, Warning};
 use crate::start::StartCompletion;
 
 /// Reads the bodies of a start file with their ids.
@@ -40,15 +40,18 @@ pub(super) fn bodies_of_file(
         file: &FILE,
         rest: "virial = 0.0 starts at rest",
     };
+    completion.check(&[
+        (StartQuantity::Mass, &MASS, file.supplied.mass.is_some()),
+        (StartQuantity::Velocity, &VIRIAL, scene.start.file_virial.is_some()),
+    ])?;
     completion.quantity((StartQuantity::Mass, &MASS), file.supplied.mass, &mut bodies, warnings, |body| {
         &mut body.mass
     })?;
     if frame.has_momenta {
         bodies.iter_mut().for_each(|body| body.velocity = body.velocity.map(|p| p / body.mass));
     }
-    let key: &Key = &VIRIAL;
     let is_drawn =
-        completion.is_supplied((StartQuantity::Velocity, key), scene.start.file_virial, warnings)?;
+        completion.is_supplied((StartQuantity::Velocity, &VIRIAL), scene.start.file_virial, warnings)?;
     let ids = bodies.iter().map(|body| body.id).collect();
     let mut all: Vec<InitialBody> =
         bodies.iter().map(|body| (body.mass, body.position, body.velocity)).collect();
