@@ -136,7 +136,7 @@ fn gsd_of_the_package_starts_every_method() {
             let first = prepared.particles().all()[0];
             let corner = if is_space { 0.0 } else { 10.0 };
             assert_eq!(first.position, [corner - 6.5, corner - 6.5, 0.0]);
-            assert_eq!(first.velocity, [f64::from(0.345_584_2_f32), f64::from(0.821_618_14_f32), 0.0]);
+            assert_eq!(first.velocity, [0.3455841839313507, 0.8216181397438049, 0.0]);
             assert_eq!(first.mass, mass);
             assert!(is_space || first.radius == radius);
             let defaults = prepared.warnings.iter().filter(|warning| warning.check == "start-file-defaults");
@@ -394,7 +394,7 @@ const BAD: [(&str, &str, &str, &str); 22] = [
         "ase_momenta.xyz",
         "      1.18253283      0.00000000",
         "      1.18253283      0.50000000",
-        ":3:37: component z of pos is 0.5",
+        ":3:42: component z of pos is 0.5",
     ),
 ];
 

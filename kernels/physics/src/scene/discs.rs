@@ -3,7 +3,7 @@
 use super::binding::Binding;
 use super::disc_keys::*;
 use super::keys::{Key, KeyValue};
-use super::speed::Speed;
+use super::speed::{Speed, bind_exactness};
 use super::start_file::StartFile;
 use crate::placement::Second;
 use crate::words::define_words;
@@ -318,6 +318,9 @@ impl Amount {
             Amount::PackingFraction(fraction) => (None, Some(fraction)),
             Amount::Both(count, fraction) => (Some(count as u64), Some(fraction)),
         };
+        if binding.reads() {
+            (count, fraction) = (None, None);
+        }
         binding.whole_if_any(&COUNT, &mut count);
         binding.number_if_any(&PACKING_FRACTION, &mut fraction);
         *self = match (fraction, count) {
@@ -336,7 +339,7 @@ impl GeneratedDiscs {
         let mut speed = Some(self.speed);
         Speed::bind(binding, &mut speed);
         self.speed = speed.unwrap_or_default();
-        binding.switch(&EXACT_TEMPERATURE, &mut self.is_exact);
+        bind_exactness(binding, &mut self.is_exact);
         if spread {
             bind_number_or(binding, &SECOND_RADIUS, &mut self.second.radius, self.radius);
             binding.number(&SECOND_SHARE, &mut self.second.share);

@@ -17,6 +17,7 @@ mod machine;
 mod overrides;
 mod reading;
 mod rules;
+mod shared_frame;
 mod speed;
 mod start_file;
 mod target;

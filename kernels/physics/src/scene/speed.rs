@@ -1,7 +1,7 @@
 //! Velocities of particles at the start.
 
 use super::binding::Binding;
-use super::disc_keys::{SPEED, TEMPERATURE};
+use super::disc_keys::{EXACT_TEMPERATURE, SPEED, TEMPERATURE};
 
 /// Velocities at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,5 +39,14 @@ impl Speed {
 impl Default for Speed {
     fn default() -> Self {
         Speed::Deviation(0.0)
+    }
+}
+
+/// Binds the key for exact temperatures; it is written only where it is set, so that scenes without it keep their text.
+pub(super) fn bind_exactness(binding: &mut dyn Binding, is_exact: &mut bool) {
+    let mut given = is_exact.then_some(true);
+    binding.switch_if_any(&EXACT_TEMPERATURE, &mut given);
+    if binding.reads() {
+        *is_exact = given.unwrap_or(false);
     }
 }

@@ -1,14 +1,11 @@
 //! Start files of scenes, and what keys supply where a file lacks it.
 
 use super::binding::Binding;
-use super::disc_keys::{EXACT_TEMPERATURE, FILE, FRAME, MASS, RADIUS, SEED};
-use super::speed::Speed;
+use super::disc_keys::{FILE, FRAME, MASS, RADIUS, SEED};
+use super::shared_frame::SharedFrame;
+use super::speed::{Speed, bind_exactness};
 use crate::io::start_files::{StartFileError, StartFrame, StartRequest, read_start_file};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
-
-/// Path, request and frame of a start file, shared by all runs of a scene and filled by the first.
-pub(super) type SharedFrame = Arc<OnceLock<(PathBuf, StartRequest, StartFrame)>>;
 
 /// Start file, read once by the runs that share it.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +68,7 @@ impl StartFile {
         Speed::bind(binding, speed);
         if speed.is_some() {
             binding.whole(&SEED, seed);
-            binding.switch(&EXACT_TEMPERATURE, is_exact);
+            bind_exactness(binding, is_exact);
         }
     }
 

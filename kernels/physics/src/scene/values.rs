@@ -3,7 +3,7 @@
 use super::SceneError;
 use super::key_set::KeySet;
 use super::keys::{Fallback, Key, KeyValue, Use};
-use super::start_file::SharedFrame;
+use super::shared_frame::SharedFrame;
 use crate::input::{MistakeList, Spot, TextLocation};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;

@@ -11,12 +11,7 @@ use std::path::Path;
 
 pub(super) static FORMAT: StartFormat = StartFormat {
     name: "LAMMPS data",
-    recognises: |head| {
-        lines(head)
-            .skip(1)
-            .take(40)
-            .any(|line| line.strip_suffix(b"atoms").is_some_and(|count| is_count(count.trim_ascii())))
-    },
+    recognises: |head| lines(head).skip(1).take(40).any(announces_atoms),
     read,
     columns: [
         "section Velocities",
@@ -24,6 +19,12 @@ pub(super) static FORMAT: StartFormat = StartFormat {
         "densities (Atoms # sphere), or section Masses",
     ],
 };
+
+/// True for a line such as `16 atoms`.
+fn announces_atoms(line: &[u8]) -> bool {
+    let text = line.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii();
+    text.strip_suffix(b"atoms").is_some_and(|count| is_count(count.trim_ascii()))
+}
 
 /// Columns of a row of `Atoms`.
 #[derive(Clone, Copy)]
@@ -93,9 +94,9 @@ impl DataSections {
                     }
                     section = Some(text.to_owned());
                 }
-                (_, Some("Masses")) => sections.masses.push(line),
-                (_, Some("Atoms")) => sections.atoms.push(line),
-                (_, Some("Velocities")) => sections.velocities.push(line),
+                (_, Some("Masses")) => sections.masses.push(line.without_comment()),
+                (_, Some("Atoms")) => sections.atoms.push(line.without_comment()),
+                (_, Some("Velocities")) => sections.velocities.push(line.without_comment()),
                 (_, Some(_)) => {}
                 ([count, "atoms"], None) => sections.count = Some((file.count(&line, count)?, line.number)),
                 ([low, high, from, _], None) if from.ends_with("lo") => {

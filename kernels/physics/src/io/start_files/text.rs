@@ -286,6 +286,12 @@ impl TextFile {
 }
 
 impl TextLine {
+    /// Line up to a `#`.
+    pub(super) fn without_comment(mut self) -> TextLine {
+        self.text.truncate(self.text.find('#').unwrap_or(self.text.len()));
+        self
+    }
+
     /// Words of the line.
     pub(super) fn words(&self) -> Vec<&str> {
         self.text.split_ascii_whitespace().collect()
