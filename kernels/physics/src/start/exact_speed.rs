@@ -4,7 +4,7 @@ use crate::particles::Particle;
 use crate::scene::Speed;
 
 /// Removes the mean motion along the axes that conserve momentum, and scales velocities so that their temperature is exact: a disc of mass m has
-/// the deviation σ(m) along every degree of freedom, N − 1 along conserved axes and N along others. Nothing changes at rest.
+/// the deviation σ(m) along every degree of freedom, N − 1 along conserved axes and N along others. Particles at rest stay so.
 pub(super) fn scale_velocities(grains: &mut [Particle], speed: Speed, conserved: [bool; 2]) {
     let mass: f64 = grains.iter().map(|grain| grain.mass).sum();
     let mut freedoms = 0.0;
@@ -49,6 +49,7 @@ mod tests {
         assert!(momentum.abs() < 1e-14 && (heat / 5.0 - 0.7).abs() < 1e-14, "{momentum} {heat}");
         // The directions are kept: the second disc moved with velocity (−0.5 − 9/6, 0.25).
         assert!((grains[1].velocity[0] / grains[1].velocity[1] + 8.0).abs() < 1e-13);
+        grains.iter_mut().for_each(|grain| grain.velocity = [0.0; 3]);
         let before = grains.clone();
         scale_velocities(&mut grains, Speed::Temperature(0.0), [true, false]);
         assert_eq!(grains, before);

@@ -1,8 +1,6 @@
 //! XYZ, extended by `key=value` in the second line or plain.
 
-use super::{
-    QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, is_count, lines,
-};
+use super::{QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, lines};
 use crate::io::extxyz::{ParsedFrame, read_start};
 use std::path::Path;
 
