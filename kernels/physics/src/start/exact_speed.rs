@@ -8,9 +8,9 @@ use crate::scene::Speed;
 pub(super) fn scale_velocities(grains: &mut [Particle], speed: Speed, conserved: [bool; 2]) {
     let mass: f64 = grains.iter().map(|grain| grain.mass).sum();
     let mut freedoms = 0.0;
-    for axis in 0..2 {
-        freedoms += grains.len() as f64 - f64::from(conserved[axis]);
-        if conserved[axis] {
+    for (axis, is_conserved) in conserved.into_iter().enumerate() {
+        freedoms += grains.len() as f64 - f64::from(is_conserved);
+        if is_conserved {
             let mean = grains.iter().map(|grain| grain.mass * grain.velocity[axis]).sum::<f64>() / mass;
             grains.iter_mut().for_each(|grain| grain.velocity[axis] -= mean);
         }

@@ -138,7 +138,7 @@ impl Heading {
         ];
         // Other programs write other versions; their layout is that of the major version.
         let major = u16::from_le_bytes([bytes[46], bytes[47]]);
-        if !is_own && !(bytes[..8] != own[..8] || differs(SCHEMA_AT, SCHEMA_END)) {
+        if !is_own && bytes[..8] == own[..8] && !differs(SCHEMA_AT, SCHEMA_END) {
             return if major == 2 {
                 Ok(heading)
             } else {

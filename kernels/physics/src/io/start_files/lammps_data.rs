@@ -26,6 +26,9 @@ fn announces_atoms(line: &[u8]) -> bool {
     text.strip_suffix(b"atoms").is_some_and(|count| is_count(count.trim_ascii()))
 }
 
+/// Velocity and angular velocity of an atom.
+type AtomMotion = ([f64; 3], f64);
+
 /// Columns of a row of `Atoms`.
 #[derive(Clone, Copy)]
 struct AtomStyle {
@@ -237,10 +240,7 @@ impl DataSections {
     }
 
     /// Velocity and angular velocity by id; none without the section.
-    fn velocities_of_ids(
-        &self,
-        file: &TextFile,
-    ) -> Result<Option<HashMap<u32, ([f64; 3], f64)>>, TextReadError> {
+    fn velocities_of_ids(&self, file: &TextFile) -> Result<Option<HashMap<u32, AtomMotion>>, TextReadError> {
         let mut velocities = HashMap::with_capacity(self.velocities.len());
         for line in &self.velocities {
             let words = line.words();

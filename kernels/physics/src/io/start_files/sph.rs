@@ -12,8 +12,9 @@ pub(super) static FORMAT: StartFormat = StartFormat {
     recognises: |head| {
         let mut lines = lines(head);
         let (count, sides) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
-        let words = std::str::from_utf8(sides).unwrap_or_default().split_ascii_whitespace();
-        let numbers: Option<Vec<f64>> = words.map(|word| word.parse().ok()).collect();
+        let words = sides.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let numbers: Option<Vec<f64>> =
+            words.map(|word| std::str::from_utf8(word).ok()?.parse().ok()).collect();
         is_count(count) && numbers.is_some_and(|numbers| numbers.len() == 3)
     },
     read,
