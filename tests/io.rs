@@ -16,6 +16,8 @@ mod gsd;
 mod lammps;
 #[path = "io/others.rs"]
 mod others;
+#[path = "io/start_files.rs"]
+mod start_files;
 
 use stripmine_physics::io::extxyz::{ParticleFrame, write};
 use stripmine_physics::particles::{Particle, ParticleKind, Particles};

@@ -173,7 +173,7 @@ fn impossible_nbody_scenes_are_refused() {
     let endless = list("[1.0, 0, 0, 0, 0, 0, 0], [1.0, nan, 0, 0, 0, 0, 0]");
     let light = list("[1.0, 0, 0, 0, 0, 0, 0], [1e-19, 1, 0, 0, 0, 0, 0]");
     let cases: [(&[&str], &[&str]); 13] = [
-        (&["particles.file=start.xyz"], &["bodies have no start file", "list them in particles.bodies"]),
+        (&["particles.file=start.xyz"], &["start.xyz", "No such file"]),
         (&["particles.generate=list", &one], &["one body alone"]),
         (&["particles.generate=list", &heavy], &["body 2 has the mass -1.0"]),
         (&["particles.generate=list", &twice], &["bodies 1 and 2 are both at (0, 1, 0)", "law.softening"]),

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use stripmine_physics::method::lattice_md::{
     ENTRY, GearValues, GranularDocument, GranularScene, GranularScheme,
 };
-use stripmine_physics::method::{METHODS, load};
+use stripmine_physics::method::{METHODS, load, prepare, vocabularies};
 use stripmine_physics::particles;
-use stripmine_physics::scene::{DiscStart, Key, KeyValueKind, MistakeKind};
+use stripmine_physics::scene::{DiscStart, Key, KeyValueKind, MistakeKind, SceneValues};
 
 fn stripmine(arguments: &[&str]) -> std::process::Output {
     Command::cargo_bin("stripmine").unwrap().args(arguments).output().unwrap()
@@ -128,7 +128,7 @@ fn cells_of_the_paper_can_be_set() {
 }
 
 /// Keys that no preset and no scene of the gallery sets, each with its purpose.
-const NOT_SHOWN: [(&str, &str); 36] = [
+const NOT_SHOWN: [(&str, &str); 39] = [
     ("integrator.damping", "the friction of the paper's integrator, which the item of energies varies"),
     ("integrator.on_long_step", "a run continues with rare too-fast discs, which thermo.csv counts"),
     ("law.contact_arm", "contacts as in LAMMPS, for comparison"),
@@ -150,9 +150,12 @@ const NOT_SHOWN: [(&str, &str); 36] = [
     ("output.losses", "no table where many particles may be lost"),
     ("output.structure_share", "all rows and snapshots of a small system"),
     ("output.trajectory", "no text if another format is written"),
+    ("particles.exact_temperature", "the temperature of a small start to all digits"),
     ("particles.expansion", "a sphere or shell that expands"),
     ("particles.file", "a start from another program, or from a frame"),
+    ("particles.frame", "a start from the middle of a trajectory"),
     ("particles.mass_ratio", "two bodies of different masses"),
+    ("particles.masses", "listed discs of several materials"),
     ("particles.second_radius", "binary mixtures, which do not crystallise"),
     ("particles.second_share", "the composition of binary mixtures"),
     ("run.most_lost", "losses as in the paper, which the item of losses counts"),
@@ -561,5 +564,41 @@ fn facts_keep_precision_in_any_unit() {
         for (label, words) in expected {
             assert!(facts.iter().any(|fact| fact.0 == *label && fact.1 == *words), "{label}: {facts:?}");
         }
+    }
+}
+
+/// Number and packing fraction give the box in every generator: N π r² over the open area, by hand.
+#[test]
+fn count_and_packing_fraction_give_the_box() {
+    let head = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"lattice-md\"\n[law]\nstiffness = 100.0\n[integrator]\ndt = 0.001\n\
+                [run]\nsteps = 1\n[particles]\ncount = 80\npacking_fraction = 0.4\nradius = 0.5\nmass = 1.0\n";
+    let area = 80.0 * std::f64::consts::PI * 0.25 / 0.4;
+    for (generate, more, sides) in [
+        ("random", "", [area.sqrt(); 2]),
+        ("compressed", "", [area.sqrt(); 2]),
+        ("mesh", "spacing = 1.0\n", [area.sqrt(); 2]),
+        ("pipe", "clear_width = 5.0\nwall_radius = 0.5\n", [area / 5.0, 7.0]),
+        ("box", "fill_height = 8.0\nwall_radius = 0.5\n", [area / 8.0, 10.0]),
+    ] {
+        let periodic = if more.contains("wall") {
+            "domain.periodic=[true, false]"
+        } else {
+            "domain.periodic=[true, true]"
+        };
+        let text = format!("{head}generate = \"{generate}\"\n{more}");
+        let overrides = [periodic.to_owned()];
+        let values = SceneValues::parse("scene", &text, &overrides, &vocabularies(METHODS)).unwrap();
+        let (prepared, _) = prepare(values, METHODS).unwrap_or_else(|error| panic!("{generate}: {error}"));
+        for axis in 0..2 {
+            assert!((prepared.domain.length(axis) / sides[axis] - 1.0).abs() < 1e-14, "{generate}");
+        }
+        assert_eq!(prepared.particles().grain_count(), 80, "{generate}");
+        // The written scene has no sides either, and gives the same discs.
+        let values = SceneValues::parse("again", &prepared.scene, &[], &vocabularies(METHODS)).unwrap();
+        assert_eq!(prepare(values, METHODS).unwrap().0.particles(), prepared.particles(), "{generate}");
+        let one = format!("{head}generate = \"{generate}\"\n{more}").replace("count = 80\n", "");
+        let error =
+            SceneValues::parse("scene", &one, &overrides, &vocabularies(METHODS)).unwrap_err().to_string();
+        assert!(error.contains("`domain.sides` is missing"), "{error}");
     }
 }

@@ -1,5 +1,6 @@
 //! Scenes that were read and checked against every precondition.
 
+use crate::overrides::GivenOverrides;
 use crate::particles::dimensions;
 use stripmine_physics::method::{METHODS, MethodEntry, Prepared, prepare, vocabularies};
 use stripmine_physics::scene::{SceneErrors, SceneValues};
@@ -25,11 +26,14 @@ impl SceneSource {
         }
     }
 
-    pub(crate) fn values(&self, given: &[String]) -> Result<SceneValues, SceneErrors> {
+    pub(crate) fn values(&self, given: &GivenOverrides) -> Result<SceneValues, SceneErrors> {
         let known = vocabularies(METHODS);
+        let given = (given.texts.as_slice(), given.arrays.as_slice());
         match self {
-            SceneSource::Named(name) => SceneValues::load(name, given, &known),
-            SceneSource::Text(text) => SceneValues::parse(OF_TEXT, text, given, &known),
+            SceneSource::Named(name) => {
+                SceneValues::parse_with_arrays(name, &SceneValues::text(name, &known)?, given, &known)
+            }
+            SceneSource::Text(text) => SceneValues::parse_with_arrays(OF_TEXT, text, given, &known),
         }
     }
 }

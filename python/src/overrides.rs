@@ -1,30 +1,68 @@
-//! Python dicts as overrides `section.key=value`.
+//! Python dicts as overrides `section.key=value`. Arrays of numbers are passed as they are, without a text in between.
 
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use serde_json::Value;
+use stripmine_physics::scene::NumberArray;
 
 /// Deepest nesting of lists.
 const DEEPEST: usize = 8;
+
+/// Overrides of a scene.
+#[derive(Clone, Default)]
+pub(crate) struct GivenOverrides {
+    /// Overrides as texts.
+    pub(crate) texts: Vec<String>,
+    /// Arrays by their keys.
+    pub(crate) arrays: Vec<(String, NumberArray)>,
+}
+
+impl GivenOverrides {
+    fn add(&mut self, path: String, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        match array(value)? {
+            Some(array) => self.arrays.push((path, array)),
+            None => self.texts.push(format!("{path}={}", toml(&path, value, 0)?)),
+        }
+        Ok(())
+    }
+}
+
+/// Numbers of a numpy array of floats or integers; none for anything else, and for a single number.
+fn array(value: &Bound<'_, PyAny>) -> PyResult<Option<NumberArray>> {
+    let is_array = value.hasattr("dtype")? && value.hasattr("astype")?;
+    if !is_array || value.getattr("ndim")?.extract::<usize>()? == 0 {
+        return Ok(None);
+    }
+    let kind: String = value.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !["f", "i", "u"].contains(&kind.as_str()) {
+        return Ok(None);
+    }
+    let numbers = value.call_method1("astype", ("float64", "C"))?;
+    let numbers = numbers.cast_into::<PyArrayDyn<f64>>()?;
+    Ok(Some(NumberArray { shape: numbers.shape().to_vec(), numbers: numbers.to_vec()? }))
+}
 
 /// Converts to overrides a dict with keys `section.key`, a dict of sections with dicts of keys, or a list of strings.
 ///
 /// # Errors
 /// `TypeError` if a key is not a string, or a value has no form in a scene.
-pub(crate) fn overrides(given: &Bound<'_, PyAny>) -> PyResult<Vec<String>> {
-    let Ok(given) = given.cast::<PyDict>() else { return given.extract() };
-    let mut found = vec![];
+pub(crate) fn overrides(given: &Bound<'_, PyAny>) -> PyResult<GivenOverrides> {
+    let mut found = GivenOverrides::default();
+    let Ok(given) = given.cast::<PyDict>() else {
+        found.texts = given.extract()?;
+        return Ok(found);
+    };
     for (name, value) in given {
         let name = text(&name)?;
         match value.cast::<PyDict>() {
             Ok(section) if !name.contains('.') => {
                 for (key, value) in section {
-                    let path = format!("{name}.{}", text(&key)?);
-                    found.push(format!("{path}={}", toml(&path, &value, 0)?));
+                    found.add(format!("{name}.{}", text(&key)?), &value)?;
                 }
             }
-            _ => found.push(format!("{name}={}", toml(&name, &value, 0)?)),
+            _ => found.add(name, &value)?,
         }
     }
     Ok(found)

@@ -4,7 +4,7 @@ use crate::checked::{CheckedScene, SceneSource};
 use crate::computing::computed;
 use crate::exceptions;
 use crate::json;
-use crate::overrides::overrides;
+use crate::overrides::{GivenOverrides, overrides};
 use crate::particles::Particles;
 use crate::run::Run;
 use crate::running::{begin_scratch, carry_out};
@@ -22,7 +22,7 @@ use stripmine_physics::run::{ExistingRun, RunError, choices_of_the_run, forecast
 #[pyclass(frozen, module = "stripmine")]
 pub(crate) struct Scene {
     source: SceneSource,
-    given: Vec<String>,
+    given: GivenOverrides,
     checked: Arc<CheckedScene>,
 }
 
@@ -57,7 +57,8 @@ impl Scene {
         if chosen.is_empty() {
             return Ok(self.checked.clone());
         }
-        let given = [self.given.as_slice(), &chosen].concat();
+        let mut given = self.given.clone();
+        given.texts.extend(chosen);
         let read = computed(py, || self.source.values(&given).and_then(CheckedScene::of))?;
         Ok(Arc::new(read.map_err(|mistakes| exceptions::of(py, &mistakes))?))
     }

@@ -52,8 +52,12 @@ def scene(source: str | os.PathLike[str], overrides: dict[str, Any] | list[str] 
 
     `source` is a preset name, a file path, or the scene itself as TOML text of several lines. `overrides` changes values:
     `{"particles.count": 400}`, or by section `{"particles": {"count": 400}}`. Values are numbers, strings, True and False, lists and
-    arrays; `{"particles.positions": xy}` takes an array of shape (N, 2) (length). A list has strings as on the command line,
-    `["particles.count=400"]`, like the `overrides` of a plan.
+    arrays. A list has strings as on the command line, `["particles.count=400"]`, like the `overrides` of a plan.
+
+    Particles of your own are arrays of numpy, which are passed on as numbers, without a text in between: with `"particles.generate": "list"`
+    discs have `"particles.positions"` (length) and `"particles.velocities"` (length/time) of shape (N, 2), and `"particles.radii"` (length),
+    `"particles.masses"` (mass) and `"particles.omegas"` (1/time) of shape (N,). Bodies in space have `"particles.bodies"` of shape (N, 7): mass,
+    position, velocity. NaN, another shape or length raise `SceneError` with the key and the index.
 
     Raises `SceneError` with every mistake at once; `TypeError` for a value that no scene can have.
     """

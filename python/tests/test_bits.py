@@ -109,6 +109,31 @@ class Bits(unittest.TestCase):
         np.testing.assert_array_equal(particles.positions, given["particles.positions"])
         np.testing.assert_array_equal(particles.velocities, given["particles.velocities"])
 
+    def test_arrays_start_like_lists(self):
+        # 1024 discs on a square lattice, as arrays and as lists that become text: the same scene to the bit.
+        x, y = np.meshgrid(np.arange(32.0) + 1.0 / 3.0, np.arange(32.0) + 2.0 / 3.0)
+        random = np.random.default_rng(5)
+        arrays = {
+            "domain.sides": np.array([32.0, 32.0]),
+            "particles.generate": "list",
+            "particles.positions": np.stack([x.ravel(), y.ravel()], axis=1),
+            "particles.velocities": random.normal(size=(1024, 2)),
+            "particles.radii": np.full(1024, 0.25),
+            "particles.masses": random.uniform(1.0, 2.0, 1024),
+            "particles.omegas": np.zeros(1024, dtype=int),
+        }
+        lists = {key: value if isinstance(value, str) else value.tolist() for key, value in arrays.items()}
+        text = 'format = 2\nunits = "reduced"\n[method]\nkind = "hard-disks"\n[particles]\nradius = 0.25\nmass = 1.0\n[run]\ntime = 1.0\n'
+        scenes_of = [stripmine.scene(text, given) for given in (arrays, lists)]
+        self.assertEqual(scenes_of[0].toml(), scenes_of[1].toml())
+        particles = scenes_of[0].particles()
+        np.testing.assert_array_equal(particles.mass, arrays["particles.masses"])
+        # Arrays in the order of columns, of single precision and of bodies.
+        bodies = np.asfortranarray(random.normal(size=(5, 7)).astype(np.float32))
+        bodies[:, 0] = 1.0
+        scene = stripmine.scene("plummer", {"particles.generate": "list", "particles.bodies": bodies})
+        np.testing.assert_array_equal(scene.particles().positions, bodies[:, 1:4].astype(float))
+
 
 class Forces(unittest.TestCase):
     def test_pair_forces_match_accelerations(self):

@@ -124,7 +124,9 @@ impl Flight {
         flight.bind(&mut read);
         read.finish_reading()?;
         let (domain, start) = (&flight.domain, &flight.start);
-        let stated = StatedStart { values: &values, domain, start, walls: WallMotion::Fixed, compress };
+        let conserved = domain.periodic;
+        let stated =
+            StatedStart { values: &values, domain, start, walls: WallMotion::Fixed, conserved, compress };
         let made = create_initial_state(&stated)?;
         SceneErrors::ok_if_empty(outside(&stated, &made.domain, &made.particles))?;
         Ok(Flight { bounds: Some(made.domain), made: made.particles, ..flight })

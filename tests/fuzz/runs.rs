@@ -12,7 +12,7 @@ fn is_small(scene: &GranularScene) -> bool {
     const MOST: f64 = 300.0;
     let sides = scene.domain.sides.unwrap_or([1.0; 2]);
     let few = |amount: &Amount, grains: &GeneratedDiscs| match amount {
-        Amount::Count(count) => (*count as f64) <= MOST,
+        Amount::Count(count) | Amount::Both(count, _) => (*count as f64) <= MOST,
         Amount::PackingFraction(fraction) => {
             fraction * sides[0] * sides[1] / (grains.radius * grains.radius * 3.0) <= MOST
         }

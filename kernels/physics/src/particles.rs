@@ -45,6 +45,12 @@ pub(crate) const fn in_plane([x, y, _]: [f64; 3]) -> [f64; 2] {
 }
 
 impl Particle {
+    /// Particle at rest whose radius and mass are still 0.
+    pub(crate) const fn at_rest(id: u32, kind: ParticleKind, position: [f64; 3]) -> Particle {
+        let (velocity, angle, omega, radius, mass) = ([0.0; 3], 0.0, 0.0, 0.0, 0.0);
+        Particle { id, kind, position, velocity, angle, omega, radius, mass }
+    }
+
     /// Position in the plane (length).
     pub const fn planar_position(&self) -> [f64; 2] {
         in_plane(self.position)

@@ -81,8 +81,12 @@ fn seed_keys(values: &SceneValues, vocabulary: &Vocabulary) -> Vec<(&'static Key
         Some(KeyValue::Whole(seed)) => Some((*key, seed)),
         _ => None,
     };
-    let used: Vec<&'static Key> =
-        vocabulary.keys.keys().filter(is_seed).filter(|key| values.is_used(key)).collect();
+    let used: Vec<&'static Key> = vocabulary
+        .keys
+        .keys()
+        .filter(is_seed)
+        .filter(|key| values.is_used(key) && !values.is_idle(key))
+        .collect();
     let found: Vec<(&'static Key, u64)> = used.iter().filter_map(seed).collect();
     if !found.is_empty() {
         return found;

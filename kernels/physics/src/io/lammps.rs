@@ -36,6 +36,21 @@ pub(crate) const DATA: OutputFormat = OutputFormat {
     reading: FrameReading::Never,
 };
 
+/// First words of a data file of this program.
+pub(super) const DATA_HEADING: &str = "LAMMPS data file by stripmine";
+/// Columns of a dump of this program.
+pub(super) const DUMP_COLUMNS: &str = "id type x y z vx vy vz omegaz radius mass";
+/// Type of wall discs in files of this program.
+pub(super) const WALL_TYPE: &str = "2";
+
+/// Mass of a ball of a density and radius, as LAMMPS computes it in two dimensions too.
+pub(super) fn mass_of_sphere(density: f64, radius: f64) -> f64 {
+    density * VOLUME * (radius * radius * radius)
+}
+
+/// Volume of a ball of radius 1.
+const VOLUME: f64 = 4.0 / 3.0 * PI;
+
 struct LammpsSnapshots;
 
 impl TextFormat for LammpsSnapshots {
@@ -72,7 +87,7 @@ fn bounds(frame: &ParticleFrame) -> [[f64; 2]; 3] {
 /// Errors of the writer.
 pub fn write_data(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()> {
     let discs = frame.particles.all();
-    writeln!(out, "LAMMPS data file by stripmine, atom_style sphere, timestep = {}\n", frame.step)?;
+    writeln!(out, "{DATA_HEADING}, atom_style sphere, timestep = {}\n", frame.step)?;
     writeln!(out, "{} atoms\n2 atom types\n", discs.len())?;
     for (axis, [low, high]) in ['x', 'y', 'z'].into_iter().zip(bounds(frame)) {
         writeln!(out, "{low:?} {high:?} {axis}lo {axis}hi")?;
@@ -82,7 +97,7 @@ pub fn write_data(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()>
     }
     writeln!(out, "\nAtoms # sphere\n")?;
     for disc in discs {
-        let density = disc.mass / (4.0 / 3.0 * PI * (disc.radius * disc.radius * disc.radius));
+        let density = disc.mass / (VOLUME * (disc.radius * disc.radius * disc.radius));
         let ([x, y, z], diameter) = (disc.position, 2.0 * disc.radius);
         writeln!(out, "{} {} {diameter:?} {density:?} {x:?} {y:?} {z:?}", disc.id, atom_type(disc.kind))?;
     }
@@ -107,7 +122,7 @@ pub fn write_dump(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()>
     for [low, high] in bounds(frame) {
         writeln!(out, "{low:?} {high:?}")?;
     }
-    writeln!(out, "ITEM: ATOMS id type x y z vx vy vz omegaz radius mass")?;
+    writeln!(out, "ITEM: ATOMS {DUMP_COLUMNS}")?;
     for disc in frame.particles.all() {
         let ([x, y, z], [u, v, w]) = (disc.position, disc.velocity);
         write!(out, "{} {} {x:?} {y:?} {z:?} {u:?} {v:?} {w:?} ", disc.id, atom_type(disc.kind))?;

@@ -9,13 +9,16 @@ pub mod growing_file;
 pub mod gsd;
 pub mod lammps;
 pub(crate) mod lock;
+mod numbers;
 pub(crate) mod open_sinks;
 pub mod output_format;
 pub mod owned_folder;
+mod plane;
 pub mod regular_file;
 pub mod replace;
 pub mod run_moment;
 pub mod sink;
+pub mod start_files;
 pub mod table_file;
 pub mod trajectory;
 

@@ -2,7 +2,7 @@
 
 use super::key_set::{KeySet, SECTIONS};
 use super::keys::{Fallback, Key, KeyValue};
-use super::start_file::SharedFrame;
+use super::shared_frame::SharedFrame;
 use super::target::MeanTarget;
 use super::values::SceneValues;
 use super::{SceneError, SceneErrors};

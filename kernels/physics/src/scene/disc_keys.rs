@@ -1,24 +1,25 @@
 //! Keys of the initial discs.
 
-use super::key_set::ExclusiveKeys;
 use super::keys::Fallback::{Is, Otherwise, Required};
-use super::keys::KeyValueKind::{Choice, Number, Numbers, Pair, Pairs, Text, Whole};
+use super::keys::KeyValueKind::{Choice, Number, Numbers, Pair, Pairs, Switch, Text, Whole};
 use super::keys::NumberRange::{Finite, NonNegative, Positive, UpTo, Within};
 use super::keys::{Use, define_keys};
 use crate::words::{Words, define_words};
 
 const ALWAYS: Use = None;
 const GENERATED: Use =
-    Some((&GENERATE, &["random", "compressed", "mesh", "hexagonal", "pipe", "box", "list"]));
+    Some((&GENERATE, &["random", "compressed", "mesh", "hexagonal", "pipe", "box", "list", "file"]));
+const SAMPLED: Use = Some((&GENERATE, &["random", "compressed", "mesh", "hexagonal", "pipe", "box", "file"]));
+const READ: Use = Some((&GENERATE, &["file"]));
 const DRAWN: Use = Some((&GENERATE, &["random", "compressed", "mesh", "hexagonal", "pipe", "box"]));
-const PLACED: Use = Some((&GENERATE, &["random", "compressed", "pipe", "box"]));
+pub(super) const PLACED: Use = Some((&GENERATE, &["random", "compressed", "pipe", "box"]));
 pub(super) const SIDED: Use =
     Some((&GENERATE, &["random", "compressed", "mesh", "pipe", "box", "list", "file"]));
 const WALLED: Use = Some((&GENERATE, &["pipe", "box", "list"]));
 const LINED: Use = Some((&GENERATE, &["pipe", "box"]));
 const HOLDING: Use = Some((&GENERATE, &["pipe", "box", "list", "file"]));
 const PIPE: Use = Some((&GENERATE, &["pipe"]));
-const MESH: Use = Some((&GENERATE, &["mesh"]));
+pub(super) const MESH: Use = Some((&GENERATE, &["mesh"]));
 const BOX: Use = Some((&GENERATE, &["box"]));
 const LIST: Use = Some((&GENERATE, &["list"]));
 const OSCILLATING: Use = Some((&WALL_MOTION, &["oscillating"]));
@@ -30,16 +31,18 @@ define_keys! {
         Otherwise("read `file`"), ALWAYS,
         "Initial placement. random: without overlap. compressed: placed small and grown while they move and collide, for packing fractions up to 0.88. mesh: random sites of a square mesh. hexagonal: a hexagonal lattice with random shifts. pipe: in a pipe along x between two rows of wall discs. box: above a floor of wall discs. list: as listed.";
     FILE = "particles" "file", Text, "", Otherwise("generated"), ALWAYS,
-        "Start file, extended XYZ with id, pos, velo, radius, mass, omega; relative to the scene file.",
+        "Start file: XYZ (extended or plain), GSD, a LAMMPS data file or dump, or .sph; relative to the scene file. `radius`, `mass`, and `temperature` or `speed` supply what the file lacks.",
         implies (&GENERATE, "file");
-    SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
+    FRAME = "particles" "frame", Whole(0, u64::MAX), "", Otherwise("the last one"), READ,
+        "Number of the frame of the start file, from 0.";
+    SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), SAMPLED,
         "Seed of radii, positions and velocities.";
     COUNT = "particles" "count", Whole(1, 268_435_455), "", Otherwise("from `packing_fraction`"), DRAWN,
-        "Number of grains; a hexagonal lattice may have a few more to fill its last row.";
+        "Number of grains; a hexagonal lattice may have a few more to fill its last row. With `packing_fraction` it determines the box.";
     PACKING_FRACTION = "particles" "packing_fraction", Number(Within(0.907)), "", Otherwise("from `count`"), DRAWN,
         "N π radius² over the area open to grains: the box, the clear channel of a pipe, or the box up to its fill height.";
-    RADIUS = "particles" "radius", Number(Positive), "length", Required, GENERATED,
-        "Radius of a grain; with a spread, the mean.";
+    RADIUS = "particles" "radius", Number(Positive), "length", Otherwise("those of `file`"), GENERATED,
+        "Radius of a grain; with a spread, the mean. With `file`: of every disc, where the file has no radii.";
     SECOND_RADIUS = "particles" "second_radius", Number(Positive), "length", Otherwise("`radius`"), PLACED,
         "Mean radius of a second kind of discs.";
     SECOND_SHARE = "particles" "second_share", Number(UpTo(1.0)), "", Is("0.0"), PLACED,
@@ -48,12 +51,14 @@ define_keys! {
         "Standard deviation of the Gaussian radii, relative to `radius`.";
     RADIUS_CUT = "particles" "radius_cut", Number(UpTo(1.0)), "", Otherwise("2 `radius_spread`, at most 0.12"), PLACED,
         "Largest deviation of a radius, relative to `radius`.";
-    MASS = "particles" "mass", Number(Positive), "mass", Required, GENERATED,
-        "Mass of a disc of radius `radius`; masses scale as (their radius/`radius`)².";
-    TEMPERATURE = "particles" "temperature", Number(NonNegative), "mass·length²/time²", Otherwise("see `speed`"), DRAWN,
-        "kT of Maxwell velocities; no spin.";
-    SPEED = "particles" "speed", Number(NonNegative), "length/time", Otherwise("at rest"), DRAWN,
+    MASS = "particles" "mass", Number(Positive), "mass", Otherwise("those of `file`"), GENERATED,
+        "Mass of a disc of radius `radius`; masses scale as (their radius/`radius`)². With `file`: of every disc, where the file has no masses.";
+    TEMPERATURE = "particles" "temperature", Number(NonNegative), "mass·length²/time²", Otherwise("see `speed`"), SAMPLED,
+        "kT of Maxwell velocities; no spin. The temperature of N drawn discs differs from it by about 1/√N, unless `exact_temperature` is set.";
+    SPEED = "particles" "speed", Number(NonNegative), "length/time", Otherwise("at rest"), SAMPLED,
         "Standard deviation of each component of Gaussian velocities; no spin.";
+    EXACT_TEMPERATURE = "particles" "exact_temperature", Switch, "", Is("false"), SAMPLED,
+        "Scales drawn velocities to exactly `temperature` (or `speed`), after the mean motion is removed along every axis that conserves momentum.";
     CLEAR_WIDTH = "particles" "clear_width", Number(Positive), "length", Required, PIPE,
         "Width of the pipe between the surfaces of its wall discs; its axis is the middle of the box.";
     SPACING = "particles" "spacing", Number(Positive), "length", Otherwise("2 `radius`"), MESH,
@@ -68,6 +73,8 @@ define_keys! {
         "Angular velocities of the grains, counter-clockwise.";
     RADII = "particles" "radii", Numbers(Positive), "length", Otherwise("all `radius`"), LIST,
         "Radii of the grains.";
+    MASSES = "particles" "masses", Numbers(Positive), "mass", Otherwise("`mass`, by area"), LIST,
+        "Masses of the grains.";
     WALL_POSITIONS = "particles" "wall_positions", Pairs, "length", Otherwise("no walls"), LIST,
         "Centres of wall discs. Only `wall_motion` moves a wall disc: its mass in a contact is infinite.";
     WALL_RADIUS = "particles" "wall_radius", Number(Positive), "length", Otherwise("0.9 `radius`"), WALLED,
@@ -81,14 +88,6 @@ define_keys! {
     WALL_FREQUENCY = "particles" "wall_frequency", Number(Positive), "1/time", Required, OSCILLATING,
         "Frequency f of the walls' motion.";
 }
-
-/// Keys of discs that exclude each other.
-pub static DISC_RIVALS: &[ExclusiveKeys] = &[
-    ExclusiveKeys { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true },
-    ExclusiveKeys { keys: &[&COUNT, &PACKING_FRACTION], used: PLACED, needed: true },
-    ExclusiveKeys { keys: &[&COUNT, &PACKING_FRACTION], used: MESH, needed: true },
-    ExclusiveKeys { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false },
-];
 
 define_words! {
     /// Motion of wall discs.

@@ -3,10 +3,11 @@
 use super::binding::Binding;
 use super::disc_keys::*;
 use super::keys::{Key, KeyValue};
+use super::speed::{Speed, bind_exactness};
 use super::start_file::StartFile;
 use crate::placement::Second;
 use crate::words::define_words;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 define_words! {
     /// Kind of the initial placement.
@@ -32,7 +33,7 @@ define_words! {
 /// Initial discs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DiscStart {
-    /// Read from an extended XYZ file.
+    /// Read from a file.
     File(StartFile),
     /// Listed one by one.
     List(List),
@@ -105,6 +106,8 @@ pub enum Amount {
     Count(usize),
     /// Packing fraction N π R² over the area open to the discs.
     PackingFraction(f64),
+    /// Number and packing fraction, which determine the box.
+    Both(usize, f64),
 }
 
 impl Default for Amount {
@@ -128,23 +131,10 @@ pub struct GeneratedDiscs {
     pub mass: f64,
     /// Velocities.
     pub speed: Speed,
+    /// True if velocities are scaled to their temperature exactly.
+    pub is_exact: bool,
     /// Seed of radii, positions and velocities.
     pub seed: u64,
-}
-
-/// Velocities at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Speed {
-    /// Gaussian velocities with this standard deviation for each component (length/time); 0 is rest.
-    Deviation(f64),
-    /// Maxwell velocities with this kT (mass·length²/time²).
-    Temperature(f64),
-}
-
-impl Default for Speed {
-    fn default() -> Self {
-        Speed::Deviation(0.0)
-    }
 }
 
 /// Row of wall discs.
@@ -167,6 +157,8 @@ pub struct List {
     pub(crate) omegas: Vec<f64>,
     /// Radii (length).
     pub radii: Vec<f64>,
+    /// Masses (mass); by area if empty.
+    pub masses: Vec<f64>,
     /// Radius (length) of a disc of mass `mass`.
     pub radius: f64,
     /// Mass of a disc of radius `radius`; masses scale as (R/radius)².
@@ -258,11 +250,7 @@ impl DiscStart {
             *self = DiscStart::empty(origin);
         }
         match self {
-            DiscStart::File(file) => {
-                let mut name = file.path().to_string_lossy().into_owned();
-                binding.word(&FILE, &mut name);
-                *file = StartFile::new(start_file_path(binding.file(), &name), binding.shared_start());
-            }
+            DiscStart::File(file) => file.bind(binding),
             DiscStart::List(list) => list.bind(binding),
             DiscStart::Hexagonal { count, packing_fraction, grains } => {
                 binding.count(&COUNT, count);
@@ -293,8 +281,8 @@ impl DiscStart {
         }
     }
 
-    /// Seed of its random numbers; none if the start is read or listed.
-    pub fn seed(&self) -> Option<u64> {
+    /// Properties of drawn discs; none if the start is read or listed.
+    pub(crate) fn drawn(&self) -> Option<&GeneratedDiscs> {
         match self {
             DiscStart::File(_) | DiscStart::List(_) => None,
             DiscStart::Hexagonal { grains, .. }
@@ -302,7 +290,15 @@ impl DiscStart {
             | DiscStart::Compressed { grains, .. }
             | DiscStart::Mesh { grains, .. }
             | DiscStart::Pipe { grains, .. }
-            | DiscStart::Box { grains, .. } => Some(grains.seed),
+            | DiscStart::Box { grains, .. } => Some(grains),
+        }
+    }
+
+    /// Seed of its random numbers; none if the start is listed, or read with its velocities.
+    pub fn seed(&self) -> Option<u64> {
+        match self {
+            DiscStart::File(file) => file.supplied.speed.map(|_| file.supplied.seed),
+            _ => self.drawn().map(|grains| grains.seed),
         }
     }
 
@@ -320,39 +316,30 @@ impl Amount {
         let (mut count, mut fraction) = match *self {
             Amount::Count(count) => (Some(count as u64), None),
             Amount::PackingFraction(fraction) => (None, Some(fraction)),
+            Amount::Both(count, fraction) => (Some(count as u64), Some(fraction)),
         };
+        if binding.reads() {
+            (count, fraction) = (None, None);
+        }
         binding.whole_if_any(&COUNT, &mut count);
         binding.number_if_any(&PACKING_FRACTION, &mut fraction);
         *self = match (fraction, count) {
-            (Some(fraction), _) => Amount::PackingFraction(fraction),
+            (Some(fraction), Some(count)) => Amount::Both(count as usize, fraction),
+            (Some(fraction), None) => Amount::PackingFraction(fraction),
             (None, count) => Amount::Count(count.unwrap_or_default() as usize),
         };
     }
 }
 
 impl GeneratedDiscs {
-    /// Standard deviation of each component of the velocity of a disc of a mass (length/time).
-    pub fn deviation(&self, mass: f64) -> f64 {
-        match self.speed {
-            Speed::Deviation(speed) => speed,
-            Speed::Temperature(kt) => (kt / mass).sqrt(),
-        }
-    }
-
     fn bind(&mut self, binding: &mut dyn Binding, spread: bool) {
         binding.number(&RADIUS, &mut self.radius);
         binding.number(&MASS, &mut self.mass);
         binding.whole(&SEED, &mut self.seed);
-        let (mut speed, mut temperature) = match self.speed {
-            Speed::Deviation(speed) => (Some(speed), None),
-            Speed::Temperature(kt) => (None, Some(kt)),
-        };
-        binding.number_if_any(&SPEED, &mut speed);
-        binding.number_if_any(&TEMPERATURE, &mut temperature);
-        self.speed = match temperature {
-            Some(kt) => Speed::Temperature(kt),
-            None => Speed::Deviation(speed.unwrap_or(0.0)),
-        };
+        let mut speed = Some(self.speed);
+        Speed::bind(binding, &mut speed);
+        self.speed = speed.unwrap_or_default();
+        bind_exactness(binding, &mut self.is_exact);
         if spread {
             bind_number_or(binding, &SECOND_RADIUS, &mut self.second.radius, self.radius);
             binding.number(&SECOND_SHARE, &mut self.second.share);
@@ -391,14 +378,10 @@ impl List {
         binding.pairs(&VELOCITIES, &mut self.velocities);
         binding.numbers(&OMEGAS, &mut self.omegas);
         binding.numbers(&RADII, &mut self.radii);
+        let mut masses = Some(std::mem::take(&mut self.masses)).filter(|masses| !masses.is_empty());
+        binding.numbers_if_any(&MASSES, &mut masses);
+        self.masses = masses.unwrap_or_default();
         binding.pairs(&WALL_POSITIONS, &mut self.wall_positions);
         bind_number_or(binding, &WALL_RADIUS, &mut self.wall_radius, 0.9 * self.radius);
     }
-}
-
-/// Path of a start file: absolute, or relative to the scene file.
-fn start_file_path(scene_file: &str, path: &str) -> PathBuf {
-    let folder = Path::new(scene_file).parent().unwrap_or(Path::new(""));
-    let path = folder.join(path);
-    std::path::absolute(&path).unwrap_or(path)
 }

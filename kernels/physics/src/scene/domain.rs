@@ -3,7 +3,7 @@
 use super::SceneError;
 use super::binding::Binding;
 use super::disc_keys::SIDED;
-use super::keys::Fallback::{Is, Required};
+use super::keys::Fallback::{Is, Otherwise};
 use super::keys::KeyValueKind::{Pair, Switches};
 use super::keys::NumberRange::{Finite, Positive};
 use super::keys::{KeyValue, Use, define_keys};
@@ -17,8 +17,8 @@ define_keys! {
     pub static PLANAR_DOMAIN;
     ORIGIN = "domain" "origin", Pair(Finite), "length", Is("[0.0, 0.0]"), ALWAYS,
         "Lower left corner of the box.";
-    SIDES = "domain" "sides", Pair(Positive), "length", Required, SIDED,
-        "Sides of the box; a hexagonal start computes them from its packing fraction.";
+    SIDES = "domain" "sides", Pair(Positive), "length", Otherwise("the box of `file`, or a box for `count` at `packing_fraction`"), SIDED,
+        "Sides of the box. Without them it is that of the start file, or the one in which `count` grains have `packing_fraction`: a square, a pipe of `clear_width`, or a box of `fill_height`. A hexagonal start always computes them.";
     PERIODIC = "domain" "periodic", Switches, "", Is("[true, true]"), ALWAYS,
         "Periodicity of the sides along x and y. A disc that leaves through a closed side stops the run.";
     GRAVITY = "domain" "gravity", Pair(Finite), "length/time²", Is("[0.0, 0.0]"), ALWAYS,

@@ -87,7 +87,7 @@ define_keys! {
 
 /// Duration keys of a run with time steps: a number of steps or a time.
 pub static DURATION: &[ExclusiveKeys] =
-    &[ExclusiveKeys { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true }];
+    &[ExclusiveKeys { keys: &[&STEPS, &TIME], used: ALWAYS, needed: true, with: None }];
 
 /// Duration of a run and intervals of its output (steps; 0 is never).
 #[derive(Clone, Debug, Default, PartialEq)]

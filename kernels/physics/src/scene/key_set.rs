@@ -24,6 +24,8 @@ pub struct ExclusiveKeys {
     pub used: Use,
     /// True if one must be given.
     pub needed: bool,
+    /// Key without which they do not exclude each other: together they determine its value.
+    pub with: Option<&'static Key>,
 }
 
 /// Keys of a method's scenes.

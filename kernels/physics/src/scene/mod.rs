@@ -4,6 +4,7 @@
 //! text reports all mistakes at once, each with its location ([`SceneValues`], [`SceneErrors`]). One function for each section binds its fields to its
 //! keys, both for reading and for writing ([`Binding`]). This module names no method: it contains the keys that several of them share.
 
+mod arrays;
 mod binding;
 mod disc_keys;
 mod discs;
@@ -16,6 +17,8 @@ mod machine;
 mod overrides;
 mod reading;
 mod rules;
+mod shared_frame;
+mod speed;
 mod start_file;
 mod target;
 mod text;
@@ -26,16 +29,17 @@ mod warning;
 pub use crate::input::{
     InputError as SceneError, InputErrors as SceneErrors, MistakeKind, Spot, TextLocation,
 };
+pub use arrays::NumberArray;
 pub use binding::{Binding, ReadBinding, Write};
 pub(crate) use disc_keys::{
-    CLEAR_WIDTH, FILE, FILL_HEIGHT, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SPEED, WALL_AMPLITUDE,
+    CLEAR_WIDTH, FILE, FILL_HEIGHT, MASS, RADII, RADIUS, RADIUS_CUT, RADIUS_SPREAD, SPEED, WALL_AMPLITUDE,
     WALL_POSITIONS, WALL_RADIUS,
 };
 pub use disc_keys::{
-    COUNT, DISC_RIVALS, DISCS, GENERATE, PACKING_FRACTION, POSITIONS, SECOND_RADIUS, SECOND_SHARE, SEED,
-    SPACING, TEMPERATURE, VELOCITIES, WALL_SPACING,
+    COUNT, DISCS, GENERATE, PACKING_FRACTION, POSITIONS, SECOND_RADIUS, SECOND_SHARE, SEED, SPACING,
+    TEMPERATURE, VELOCITIES, WALL_SPACING,
 };
-pub use discs::{Amount, DiscStart, GeneratedDiscs, List, Speed, WallLining, WallMotion};
+pub use discs::{Amount, DiscStart, GeneratedDiscs, List, WallLining, WallMotion};
 pub use domain::{GRAVITY, PLANAR_DOMAIN, SIDES, SceneDomain};
 pub(crate) use domain::{ORIGIN, PERIODIC};
 pub use general::{
@@ -52,8 +56,9 @@ pub(crate) use machine::{
 };
 pub use machine::{PRECISION, Precision};
 pub use overrides::Overrides;
-pub use rules::start_inconsistencies;
-pub use start_file::StartFile;
+pub use rules::{DISC_RIVALS, start_inconsistencies};
+pub use speed::Speed;
+pub use start_file::{StartFile, SuppliedValues};
 pub use target::{MeanTarget, Width};
 pub use values::{Preset, RenamedKey, SceneValues, Vocabulary};
 pub use warning::Warning;

@@ -1,5 +1,6 @@
 //! Reading of scenes: from a preset's name, a file or a text to checked values.
 
+use super::arrays::NumberArray;
 use super::general::METHOD;
 use super::overrides::Overrides;
 use super::values::{Preset, SceneValues, Vocabulary};
@@ -22,7 +23,24 @@ impl SceneValues {
         overrides: &[String],
         methods: &[&'static Vocabulary],
     ) -> Result<SceneValues, SceneErrors> {
-        text::read(file, text, overrides, methods)?.checked()
+        SceneValues::parse_with_arrays(file, text, (overrides, &[]), methods)
+    }
+
+    /// Reads the text of a scene with overrides and, after them, arrays as values of keys `section.key`.
+    ///
+    /// # Errors
+    /// As for [`parse`](Self::parse), and for arrays of another shape or with numbers out of range.
+    pub fn parse_with_arrays(
+        file: &str,
+        text: &str,
+        (overrides, arrays): (&[String], &[(String, NumberArray)]),
+        methods: &[&'static Vocabulary],
+    ) -> Result<SceneValues, SceneErrors> {
+        let mut values = text::read(file, text, overrides, methods)?;
+        for (path, array) in arrays {
+            text::set_array(&mut values, path, array);
+        }
+        values.checked()
     }
 
     /// Returns the values with further overrides, as if the text were read again with all of them; the last one for a key applies.

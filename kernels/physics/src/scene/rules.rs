@@ -1,11 +1,25 @@
 //! Rules between keys: unused, missing, exclusive and inconsistent ones.
 
 use super::SceneError;
-use super::disc_keys::{COUNT, GENERATE, OMEGAS, PACKING_FRACTION, POSITIONS, RADII, VELOCITIES};
-use super::domain::check_periodicity;
-use super::keys::{Fallback, Key, KeyValue};
+use super::disc_keys::{
+    COUNT, FILE, GENERATE, MASS, MASSES, MESH, OMEGAS, PACKING_FRACTION, PLACED, POSITIONS, RADII, RADIUS,
+    SPEED, TEMPERATURE, VELOCITIES,
+};
+use super::domain::{SIDES, check_periodicity};
+use super::key_set::ExclusiveKeys;
+use super::keys::{Fallback, Key, KeyValue, Use};
 use super::values::SceneValues;
 use crate::input::MistakeKind;
+
+const ALWAYS: Use = None;
+
+/// Keys of discs that exclude each other.
+pub static DISC_RIVALS: &[ExclusiveKeys] = &[
+    ExclusiveKeys { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true, with: None },
+    ExclusiveKeys { keys: &[&COUNT, &PACKING_FRACTION], used: PLACED, needed: true, with: Some(&SIDES) },
+    ExclusiveKeys { keys: &[&COUNT, &PACKING_FRACTION], used: MESH, needed: true, with: Some(&SIDES) },
+    ExclusiveKeys { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false, with: None },
+];
 
 /// Applies all rules to the values, sets aside values that overrides make obsolete, and records every mistake.
 pub(super) fn apply_rules(values: &mut SceneValues) {
@@ -28,7 +42,8 @@ fn rivals(values: &mut SceneValues) {
             continue;
         }
         // An override replaces all rivals given in the file.
-        if rivals.keys.iter().filter_map(|key| values.entry(key)).any(|entry| entry.overrides) {
+        let replaces = rivals.with.is_none_or(|key| values.is_given(key));
+        if replaces && rivals.keys.iter().filter_map(|key| values.entry(key)).any(|entry| entry.overrides) {
             for key in rivals.keys {
                 if values.entry(key).is_some_and(|entry| !entry.overrides) {
                     values.set_aside(key);
@@ -36,9 +51,10 @@ fn rivals(values: &mut SceneValues) {
                 values.faulty.remove(&key.id());
             }
         }
+        let is_free = rivals.with.is_some_and(|key| !values.is_given(key) && !values.is_faulty(key));
         let given: Vec<&Key> =
             rivals.keys.iter().copied().filter(|key| values.entry(key).is_some()).collect();
-        if given.len() > 1 {
+        if given.len() > 1 && !is_free {
             let last = given.iter().max_by_key(|key| values.spot(key).place).unwrap_or(&given[0]);
             let error = values
                 .spot(last)
@@ -124,8 +140,24 @@ pub fn start_inconsistencies(values: &SceneValues) -> Vec<SceneError> {
         }
         _ => {}
     }
+    errors.extend(missing_for_generators(values, choice.as_deref()));
     errors.extend(lengths_of_lists(values));
     errors
+}
+
+/// Reports what generated and listed discs need and start files may have themselves.
+fn missing_for_generators(values: &SceneValues, choice: Option<&str>) -> Vec<SceneError> {
+    let is_absent = |key: &&Key| !values.is_given(key) && !values.is_faulty(key);
+    let Some(choice) = choice.filter(|choice| *choice != "file") else { return vec![] };
+    let determines_box =
+        choice != "list" && ![&COUNT, &PACKING_FRACTION].into_iter().any(|key| is_absent(&key));
+    let needs_sides = choice != "hexagonal" && !determines_box;
+    let needed: &[&Key] = if needs_sides { &[&SIDES, &RADIUS, &MASS] } else { &[&RADIUS, &MASS] };
+    let errors = needed.iter().copied().filter(is_absent).map(|key| {
+        let error = values.spot(key).error(MistakeKind::Missing, format!("`{}` is missing", key.path()));
+        error.expecting(key.expected()).advising(key.doc)
+    });
+    errors.collect()
 }
 
 /// Reports lists that do not have one value for each grain.
@@ -135,7 +167,7 @@ fn lengths_of_lists(values: &SceneValues) -> Vec<SceneError> {
     if positions.is_empty() {
         errors.push(values.spot(&POSITIONS).error(MistakeKind::Range, "`particles.positions` lists no disc"));
     }
-    for key in [&VELOCITIES, &OMEGAS, &RADII] {
+    for key in [&VELOCITIES, &OMEGAS, &RADII, &MASSES] {
         let length = match values.given(key) {
             Some(KeyValue::Pairs(list)) => list.len(),
             Some(KeyValue::Numbers(list)) => list.len(),

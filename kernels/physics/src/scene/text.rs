@@ -1,8 +1,9 @@
 //! Parsing of a scene's text into values that are valid on their own.
 
+use super::arrays::{ArrayFault, NumberArray};
 use super::general::{FORMAT, METHOD};
 use super::key_set::{KeySet, SECTIONS};
-use super::keys::{Key, KeyValue, ValueFault};
+use super::keys::{Key, KeyValue, KeyValueKind, ValueFault};
 use super::overrides::{as_typed, typed};
 use super::unknown::{KeyHelp, UnknownKey};
 use super::values::{SceneValues, ValueEntry, Vocabulary};
@@ -102,6 +103,48 @@ pub(super) fn set(values: &mut SceneValues, key: &Key, value: &KeyValue) {
     let source = ValueSource { text: None, file: &file, keys: &values.vocabulary.keys, methods: &methods };
     let name = Spanned::new(0..0, key.name.into());
     source.key(values, key.section, &name, &as_typed(&text));
+}
+
+/// Applies an array as the value of a key.
+pub(super) fn set_array(values: &mut SceneValues, path: &str, array: &NumberArray) {
+    let spot = Spot { file: format!("array {path}"), place: None };
+    let key = path.split_once('.').and_then(|(section, name)| values.vocabulary.keys.key(section, name));
+    let Some(key) = key else {
+        // Unknown keys have the message of a text.
+        let methods = values.methods.clone();
+        return override_with(values, &format!("{path}=[]"), &methods);
+    };
+    let expected = match key.kind {
+        KeyValueKind::Pairs => "(N, 2)".to_owned(),
+        KeyValueKind::Rows(width) => format!("(N, {width})"),
+        KeyValueKind::Pair(_) => "(2,)".to_owned(),
+        _ => "(N,)".to_owned(),
+    };
+    let of_shape = |shape: &[usize]| {
+        let comma = if shape.len() == 1 { "," } else { "" };
+        format!("({}{comma})", shape.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
+    };
+    let error = match array.value(key.kind) {
+        Ok(value) => {
+            let entry = ValueEntry { value, spot, items: vec![], overrides: true };
+            values.faulty.remove(&key.id());
+            values.values.insert(key.id(), entry);
+            return;
+        }
+        Err(ArrayFault::NoList) => {
+            spot.error(MistakeKind::Type, format!("`{path}` is an array")).expecting(key.expected())
+        }
+        Err(ArrayFault::Shape(shape)) => spot
+            .error(MistakeKind::Type, format!("`{path}` has the shape {}", of_shape(&shape)))
+            .expecting(format!("the shape {expected}")),
+        Err(ArrayFault::Number(place, number)) => {
+            let place = place.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            let error = spot.error(MistakeKind::Range, format!("`{path}`[{place}] is {number}"));
+            error.expecting(key.expected())
+        }
+    };
+    values.faulty.insert(key.id());
+    values.errors.push(error);
 }
 
 /// Source of values: the file, or an option of the command line.

@@ -3,7 +3,7 @@
 use super::SceneError;
 use super::key_set::KeySet;
 use super::keys::{Fallback, Key, KeyValue, Use};
-use super::start_file::SharedFrame;
+use super::shared_frame::SharedFrame;
 use crate::input::{MistakeList, Spot, TextLocation};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeValue;
@@ -167,6 +167,13 @@ impl SceneValues {
     /// True if a key is used in this scene.
     pub fn is_used(&self, key: &Key) -> bool {
         self.applies(key.used) == Some(true)
+    }
+
+    /// True for the seed of a start file whose velocities no key asks to draw.
+    pub fn is_idle(&self, key: &Key) -> bool {
+        let is_given = |name: &str| self.values.contains_key(&("particles", name));
+        let draws = ["temperature", "speed", "virial"].into_iter().any(is_given);
+        key.id() == ("particles", "seed") && is_given("file") && !draws
     }
 
     /// True if a key was given with an invalid value.

@@ -1,17 +1,19 @@
 //! Creation of a scene's initial discs.
 
+use super::box_size::box_for_count;
 use super::compressing::compressed;
+use super::exact_speed::scale_velocities;
 use super::filling::{JAMMING, MOST, check_placement_memory, disc, fill, grain_count};
+use super::imported::read_start;
 use super::meshing::on_mesh;
 use super::{StatedStart, rounded_to_nine_digits};
 use crate::domain::Domain;
 use crate::number::significant;
 use crate::particles::{Particle, ParticleKind, Particles, in_space};
 use crate::placement::{WallRow, hexagonal, wall_row};
-use crate::quoted;
 use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, DiscStart, FILE, FILL_HEIGHT, GeneratedDiscs, Key, List, MistakeKind, ORIGIN,
-    PERIODIC, SIDES, SceneError, Speed, StartFile, WALL_SPACING, WallLining, WallMotion, Warning,
+    SIDES, SceneError, Speed, WALL_SPACING, WallLining, WallMotion, Warning,
 };
 
 /// Smallest and largest radius: those that the scene admits, or those found in a list or file.
@@ -48,11 +50,18 @@ pub struct InitialState {
 /// # Errors
 /// [`SceneError`] if the start cannot be created.
 pub fn create_initial_state(stated: &StatedStart<'_>) -> Result<InitialState, SceneError> {
-    let domain = stated.domain.stated().unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
+    let domain = stated
+        .domain
+        .stated()
+        .or_else(|| box_for_count(stated))
+        .unwrap_or(Domain::planar([0.0; 2], [1.0; 2], [true; 2]));
     check_resolution(stated, &domain, radii(stated.start, None))?;
     let mut warnings = Vec::new();
     let (domain, mut particles) = match stated.start {
-        DiscStart::File(file) => (domain, read_start_file(stated, &domain, file, &mut warnings)?),
+        DiscStart::File(file) => {
+            let (domain, discs) = read_start(stated, file, &mut warnings)?;
+            (domain, Particles::new(discs))
+        }
         DiscStart::List(list) => (domain, listed_discs(list)),
         DiscStart::Hexagonal { count, packing_fraction, grains } => {
             check_placement_memory(stated, *count as f64, &COUNT)?;
@@ -75,6 +84,10 @@ pub fn create_initial_state(stated: &StatedStart<'_>) -> Result<InitialState, Sc
             (domain, place_above_floor(stated, &domain, *amount, grains, lining, *fill_height)?)
         }
     };
+    if let Some(grains) = stated.start.drawn().filter(|grains| grains.is_exact) {
+        let count = particles.grain_count();
+        scale_velocities(&mut particles.all_mut()[..count], grains.speed, stated.conserved);
+    }
     let start_velocity = match stated.walls {
         WallMotion::Fixed => [0.0; 2],
         WallMotion::Oscillating { amplitude, frequency } => {
@@ -138,61 +151,6 @@ fn check_resolution(
     Ok(())
 }
 
-/// Discs of the last frame of a start file, whose box must be that of the scene.
-fn read_start_file(
-    stated: &StatedStart<'_>,
-    domain: &Domain,
-    file: &StartFile,
-    warnings: &mut Vec<Warning>,
-) -> Result<Particles, SceneError> {
-    let path = file.path();
-    let frame = file.last_frame().map_err(|error| {
-        stated.spot(&FILE).error(MistakeKind::StartFile, format!("the start file cannot be used: {error}"))
-    })?;
-    if frame.particles.is_empty() {
-        let message = format!("the start file {} contains no disc", quoted::path(path));
-        return Err(stated.spot(&FILE).error(MistakeKind::StartFile, message));
-    }
-    for (found, here, key) in
-        [(frame.cell, domain.lengths(), &SIDES), (frame.origin, domain.corner(), &ORIGIN)]
-    {
-        let apart = |axis: usize| (found[axis] - here[axis]).abs() > 1e-9 * domain.length(axis);
-        if apart(0) || apart(1) {
-            let message = format!(
-                "`{}` is {here:?}, but the box of the start file {} has {found:?}",
-                key.path(),
-                quoted::path(path)
-            );
-            let error = stated.spot(key).error(MistakeKind::Contradiction, message);
-            return Err(error.expecting(format!("{} = {found:?}", key.name)));
-        }
-    }
-    if let Some(found) = frame.periodic.filter(|&found| found != domain.periodic()) {
-        let message = format!(
-            "`domain.periodic` is {:?}, but the start file {} has pbc = {found:?} along x and y",
-            domain.periodic(),
-            quoted::path(path)
-        );
-        let error = stated.spot(&PERIODIC).error(MistakeKind::Contradiction, message);
-        return Err(error.expecting(format!("periodic = {found:?}")));
-    }
-    if frame.has_raised_ids {
-        warnings.push(Warning {
-            check: "raised-ids",
-            share: f64::INFINITY,
-            is_refusal: false,
-            key: FILE.path(),
-            message: format!(
-                "ids of the start file {} begin at 0; each is raised by one, also in all files of the run",
-                quoted::path(path)
-            ),
-            suggestion: "number ids from 1, or subtract 1 to compare particles with those of the start file"
-                .to_owned(),
-        });
-    }
-    Ok(frame.particles)
-}
-
 fn listed_discs(list: &List) -> Particles {
     let of = [list.radius, list.mass];
     let columns = list.velocities.iter().zip(&list.omegas).zip(&list.radii);
@@ -202,6 +160,8 @@ fn listed_discs(list: &List) -> Particles {
         omega: *omega,
         ..disc(id, ParticleKind::Grain, *position, *radius, of)
     });
+    let mut masses = list.masses.iter();
+    let grains = grains.map(|grain| Particle { mass: masses.next().copied().unwrap_or(grain.mass), ..grain });
     let walls = list.wall_positions.iter().zip(list.positions.len() as u32 + 1..);
     let walls = walls.map(|(position, id)| disc(id, ParticleKind::Wall, *position, list.wall_radius, of));
     Particles::new(grains.chain(walls).collect())

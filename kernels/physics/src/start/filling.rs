@@ -73,6 +73,7 @@ pub(super) fn grain_count(
     let share = PI * grains.second.mean_square(grains.radius) / open;
     let (count, key): (f64, &Key) = match amount {
         Amount::Count(count) => (count as f64, &COUNT),
+        Amount::Both(count, _) => (count as f64, &PACKING_FRACTION),
         Amount::PackingFraction(fraction) => ((fraction / share).round(), &PACKING_FRACTION),
     };
     let fraction = count * share;
@@ -128,6 +129,6 @@ pub(super) fn fill(
     })?;
     // Walls absorb momentum, so it is balanced without walls only.
     let balanced = domain.periodic() == [true; 2] && obstacles.is_empty() && discs.len() > 1;
-    set_gaussian_velocities(&mut discs, seed, balanced, |disc| grains.deviation(disc.mass));
+    set_gaussian_velocities(&mut discs, seed, balanced, |disc| grains.speed.deviation(disc.mass));
     Ok(discs)
 }

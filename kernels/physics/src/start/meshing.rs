@@ -23,7 +23,7 @@ pub(super) fn on_mesh(
     let counts = [0, 1].map(|axis| (domain.length(axis) / spacing).floor().max(1.0));
     let key = if stated.values.is_given(&COUNT) { &COUNT } else { &PACKING_FRACTION };
     let count = match amount {
-        Amount::Count(count) => count as f64,
+        Amount::Count(count) | Amount::Both(count, _) => count as f64,
         Amount::PackingFraction(fraction) => {
             (fraction * domain.area() / (PI * grains.radius * grains.radius)).round()
         }
@@ -68,6 +68,6 @@ pub(super) fn on_mesh(
         .map(|(place, id)| disc(id, ParticleKind::Grain, at(place), grains.radius, of));
     let mut discs: Vec<Particle> = discs.collect();
     let balanced = domain.periodic() == [true; 2] && discs.len() > 1;
-    set_gaussian_velocities(&mut discs, grains.seed, balanced, |disc| grains.deviation(disc.mass));
+    set_gaussian_velocities(&mut discs, grains.seed, balanced, |disc| grains.speed.deviation(disc.mass));
     Ok(Particles::new(discs))
 }

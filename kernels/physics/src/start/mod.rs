@@ -1,14 +1,19 @@
 //! Initial discs of a scene: created, then checked against the box and each other.
 
+mod box_size;
 mod checks;
+mod completion;
 mod compressing;
 mod creation;
+mod exact_speed;
 mod filling;
+mod imported;
 mod meshing;
 mod noise;
 
 pub use checks::outside;
 pub(crate) use checks::{deepest_overlap, disc_noun, overlaps, rounded_to_nine_digits};
+pub(crate) use completion::StartCompletion;
 pub(crate) use creation::radii;
 pub use creation::{InitialState, create_initial_state};
 pub(crate) use noise::noise_seed;
@@ -27,6 +32,8 @@ pub struct StatedStart<'s> {
     pub start: &'s DiscStart,
     /// Motion of wall discs.
     pub walls: WallMotion,
+    /// Axes along which the method conserves momentum.
+    pub conserved: [bool; 2],
     /// Function that lets grains grow.
     pub compress: CompressFunction,
 }

@@ -144,6 +144,16 @@ pub enum XyzMistakeKind {
         /// Fields that `Properties` adds up to.
         expected: usize,
     },
+    /// A row of a frame without `Properties` that is not a name and three coordinates.
+    #[error(
+        "the row has {found} fields, and the comment line has no `Properties`; expected four fields, a name and three \
+         coordinates, or `Properties` with the names of the columns, such as {}",
+        super::PROPERTIES
+    )]
+    PlainFields {
+        /// Fields of the row.
+        found: usize,
+    },
     /// A field that is not a number.
     #[error("{column} is `{}`; expected a number", quoted(found))]
     Number {
@@ -241,6 +251,10 @@ impl XyzMistakeList {
     /// True if a further mistake would be kept; otherwise its location need not be found.
     pub(super) fn has_room(&self) -> bool {
         self.first.len() < XyzMistakeList::KEPT
+    }
+
+    pub(super) fn extend(&mut self, mistakes: impl IntoIterator<Item = Mistake>) {
+        mistakes.into_iter().for_each(|mistake| self.add(mistake));
     }
 
     /// Counts a mistake without keeping it.

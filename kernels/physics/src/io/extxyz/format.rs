@@ -58,7 +58,7 @@ const SIGNATURES: [(usize, &[u8], ForeignFormat); 8] = [
 
 impl ForeignFormat {
     /// Format of a file that starts with these bytes; none if it may be XYZ.
-    pub(super) fn of(first: &[u8]) -> Option<ForeignFormat> {
+    pub(crate) fn of(first: &[u8]) -> Option<ForeignFormat> {
         let begins = |&&(at, bytes, _): &&(usize, &[u8], ForeignFormat)| {
             first.get(at..).is_some_and(|rest| rest.starts_with(bytes))
         };

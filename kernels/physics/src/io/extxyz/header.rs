@@ -3,8 +3,8 @@
 use super::FrameContents;
 use super::error::{Mistake, XyzMistakeKind, XyzMistakeList};
 use super::format::ForeignFormat;
-use super::number_format::number;
 use super::rows::XyzRowLayout;
+use crate::io::numbers::number;
 
 /// Content of a comment line.
 pub(super) struct CommentHeader {
@@ -44,8 +44,12 @@ impl HeaderEntry {
 /// Parses a comment line; reports every wrong key.
 pub(super) fn parse(text: &str, line: usize, room: FrameContents) -> Result<CommentHeader, XyzMistakeList> {
     let mut mistakes = XyzMistakeList::default();
-    let entries = entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?;
-    if let Some(format) = ForeignFormat::of_comment(text) {
+    let is_plain = room.may_lack() && !text.contains('=');
+    let entries = match is_plain {
+        true => vec![],
+        false => entries(text).map_err(|(byte, reason)| Mistake::at(line, text, byte, reason))?,
+    };
+    if let Some(format) = ForeignFormat::of_comment(text).filter(|_| !is_plain) {
         return Err(Mistake::in_line(line, XyzMistakeKind::Format(format)).into());
     }
     // Locating a column takes time in proportion to the line, so it is done only for mistakes that are listed.
@@ -66,7 +70,7 @@ pub(super) fn parse(text: &str, line: usize, room: FrameContents) -> Result<Comm
     let mut missing = Vec::new();
     let mut cell = [0.0; 2];
     match find("lattice") {
-        None if room == FrameContents::Space => cell = [f64::INFINITY; 2],
+        None if room != FrameContents::Plane => cell = [f64::INFINITY; 2],
         None => missing.push(XyzMistakeKind::MissingKey { key: "Lattice", expected: LATTICE }),
         Some(entry) => match lattice(entry) {
             Ok(sides) => cell = sides,
@@ -75,8 +79,9 @@ pub(super) fn parse(text: &str, line: usize, room: FrameContents) -> Result<Comm
     }
     let mut layout = None;
     match find("properties") {
+        None if room.may_lack() => layout = Some(XyzRowLayout::plain()),
         None => missing.push(XyzMistakeKind::MissingKey { key: "Properties", expected: PROPERTIES }),
-        Some(entry) => match XyzRowLayout::parse(&entry.value) {
+        Some(entry) => match XyzRowLayout::parse(&entry.value, room) {
             Ok(found) => layout = Some(found),
             Err(reasons) => reasons.into_iter().for_each(|reason| keep(entry, reason)),
         },
@@ -123,7 +128,7 @@ pub(super) fn parse(text: &str, line: usize, room: FrameContents) -> Result<Comm
 
 const KEYS: [&str; 7] = ["lattice", "properties", "origin", "pbc", "time", "step", "seed"];
 const LATTICE: &str = "\"Lx 0 0 0 Ly 0 0 0 Lz\" with positive sides";
-const PROPERTIES: &str = super::PROPERTIES;
+pub(super) const PROPERTIES: &str = super::PROPERTIES;
 const ORIGIN: &str = "\"x y z\"";
 const BOUNDARIES: &str = "\"T F F\" (or \"T F\"), T where the box is periodic along x, y, z";
 

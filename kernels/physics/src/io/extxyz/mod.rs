@@ -17,7 +17,6 @@
 mod error;
 mod format;
 mod header;
-mod number_format;
 mod reader;
 mod rows;
 mod writer;
@@ -25,6 +24,8 @@ mod writer;
 pub use error::{Mistake, XyzMistakeKind, XyzReadError};
 pub use format::ForeignFormat;
 pub use reader::{FrameChoice, XyzFrames, read};
+pub(crate) use reader::{ParsedFrame, read_start};
+pub(crate) use rows::FrameColumns;
 pub(crate) use writer::FORMAT;
 pub use writer::write;
 
@@ -46,6 +47,23 @@ pub(crate) enum FrameContents {
     Plane,
     /// Everything that runs write: also bodies in space, and frames without a box, whose sides are infinite.
     Space,
+    /// Start of a scene of another program: box, velocities, radii and masses may be missing, and so may the keys of the comment line.
+    Start {
+        /// True if particles must be in one plane z = const.
+        is_planar: bool,
+    },
+}
+
+impl FrameContents {
+    /// True if other keys of the scene supply what a frame lacks.
+    fn may_lack(self) -> bool {
+        matches!(self, FrameContents::Start { .. })
+    }
+
+    /// True if velocities have no third component.
+    fn is_planar(self) -> bool {
+        matches!(self, FrameContents::Plane | FrameContents::Start { is_planar: true })
+    }
 }
 
 /// Discs in their box at one time.

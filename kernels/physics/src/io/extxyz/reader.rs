@@ -2,7 +2,8 @@
 
 use super::error::{Mistake, XyzMistakeKind, XyzMistakeList, XyzReadError};
 use super::format::ForeignFormat;
-use super::{FrameContents, ParticleFrame, header};
+use super::{FrameColumns, FrameContents, ParticleFrame, header};
+use crate::io::plane::move_into_plane;
 use crate::io::regular_file;
 use crate::particles::{MOST_PARTICLES, Particles};
 use std::collections::HashMap;
@@ -82,15 +83,23 @@ impl<R: BufRead> XyzFrames<R> {
     }
 
     fn parsed_next(&mut self) -> Result<Option<ParticleFrame>, XyzMistakeList> {
-        self.raw.next_frame()?.map(|raw| parse(&raw, self.room)).transpose()
+        Ok(self.raw.next_frame()?.map(|raw| parse(&raw, self.room)).transpose()?.map(|parsed| parsed.frame))
     }
 
     fn last_frame(&mut self) -> Result<Option<ParticleFrame>, XyzMistakeList> {
-        let mut last = None;
+        Ok(self.frame(None)?.ok().map(|parsed| parsed.frame))
+    }
+
+    /// Last frame, or the one with a number; beyond the last, the number of frames.
+    fn frame(&mut self, number: Option<u64>) -> Result<Result<ParsedFrame, u64>, XyzMistakeList> {
+        let (mut wanted, mut count) = (None, 0);
         while let Some(raw) = self.raw.next_frame()? {
-            last = Some(raw);
+            if number.is_none_or(|number| number == count) {
+                wanted = Some(raw);
+            }
+            count += 1;
         }
-        last.map(|raw| parse(&raw, self.room)).transpose()
+        wanted.map(|raw| parse(&raw, self.room)).transpose().map(|parsed| parsed.ok_or(count))
     }
 }
 
@@ -238,14 +247,39 @@ fn utf8(bytes: &[u8], line: usize) -> Result<&str, Mistake> {
     })
 }
 
-fn parse(raw: &RawFrame, room: FrameContents) -> Result<ParticleFrame, XyzMistakeList> {
+/// Frame with the quantities that its rows have.
+pub(crate) struct ParsedFrame {
+    /// Frame; numbers that its rows lack are 0, and momenta without masses stand for velocities.
+    pub(crate) frame: ParticleFrame,
+    /// Quantities of the rows.
+    pub(crate) columns: FrameColumns,
+    /// Line that names the columns.
+    pub(crate) line: usize,
+}
+
+/// Reads the last frame of a start file, or the one with a number from 0; none beyond the last, with the number of frames.
+///
+/// # Errors
+/// As for [`read`].
+pub(crate) fn read_start(
+    path: &Path,
+    number: Option<u64>,
+    is_planar: bool,
+) -> Result<Result<ParsedFrame, u64>, XyzReadError> {
+    let mut frames = XyzFrames::open(path)?;
+    frames.room = FrameContents::Start { is_planar };
+    let name = frames.name.clone();
+    frames.frame(number).map_err(|mistakes| mistakes.of_file(&name))
+}
+
+fn parse(raw: &RawFrame, room: FrameContents) -> Result<ParsedFrame, XyzMistakeList> {
     let header = raw.header(room)?;
     let mut mistakes = XyzMistakeList::default();
     let mut discs = Vec::new();
     let mut lines_of_ids = HashMap::new();
     let mut fields = Vec::new();
-    let rows = raw.text.split(|&byte| byte == b'\n').skip(1).take(raw.count);
-    for (line, row) in (raw.line + 2..).zip(rows) {
+    let rows = || (raw.line + 2..).zip(raw.text.split(|&byte| byte == b'\n').skip(1).take(raw.count));
+    for (line, row) in rows() {
         match utf8(row, line).and_then(|row| header.layout.disc(row, (line, room), &mut fields)) {
             Err(mistake) => mistakes.add(mistake),
             Ok(mut disc) => {
@@ -261,6 +295,17 @@ fn parse(raw: &RawFrame, room: FrameContents) -> Result<ParticleFrame, XyzMistak
             }
         }
     }
+    let is_plane = match room {
+        FrameContents::Plane => discs.iter().all(|disc| disc.position[2] == 0.0),
+        FrameContents::Start { is_planar: true } => move_into_plane(&mut discs),
+        FrameContents::Space | FrameContents::Start { .. } => true,
+    };
+    if !is_plane {
+        for (line, row) in rows() {
+            let row = utf8(row, line).ok();
+            mistakes.extend(row.and_then(|row| header.layout.out_of_plane(row, line)));
+        }
+    }
     // Other programs number from 0.
     let has_raised_ids = lines_of_ids.contains_key(&0);
     if has_raised_ids {
@@ -272,15 +317,19 @@ fn parse(raw: &RawFrame, room: FrameContents) -> Result<ParticleFrame, XyzMistak
     if !mistakes.is_empty() {
         return Err(mistakes);
     }
-    let header::CommentHeader { cell, origin, periodic, time, step, seed, .. } = header;
-    Ok(ParticleFrame {
-        particles: Particles::new(discs),
-        cell,
-        origin,
-        periodic,
-        time,
-        step,
-        seed,
-        has_raised_ids,
+    let header::CommentHeader { cell, origin, periodic, time, step, seed, layout } = header;
+    Ok(ParsedFrame {
+        frame: ParticleFrame {
+            particles: Particles::new(discs),
+            cell,
+            origin,
+            periodic,
+            time,
+            step,
+            seed,
+            has_raised_ids,
+        },
+        columns: layout.quantities(),
+        line: raw.line + 1,
     })
 }

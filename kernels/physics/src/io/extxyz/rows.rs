@@ -2,7 +2,7 @@
 
 use super::FrameContents;
 use super::error::{Mistake, XyzMistakeKind};
-use super::number_format::number;
+use crate::io::numbers::number;
 use crate::particles::{Particle, ParticleKind};
 
 /// Column that a frame may have.
@@ -48,17 +48,36 @@ const REQUIRED: [(&[usize], &str); 4] = [
     (&[MASS, MASSES], "`mass:R:1` (or `masses:R:1`)"),
 ];
 
+/// Quantities that the rows of a frame have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FrameColumns {
+    pub(crate) velocity: bool,
+    pub(crate) radius: bool,
+    pub(crate) mass: bool,
+    /// True if velocities are momenta, to be divided by masses that the frame lacks.
+    pub(crate) has_momenta_only: bool,
+}
+
 /// First field and width of each column, and the number of fields of a row.
 pub(super) struct XyzRowLayout {
     columns: [Option<(usize, usize)>; COLUMNS.len()],
     fields: usize,
+    /// True if the comment line names no columns.
+    is_plain: bool,
 }
 
 impl XyzRowLayout {
+    /// Layout of plain XYZ: a name and three coordinates.
+    pub(super) fn plain() -> XyzRowLayout {
+        let mut columns = [None; COLUMNS.len()];
+        (columns[SPECIES], columns[POS]) = (Some((0, 1)), Some((1, 3)));
+        XyzRowLayout { columns, fields: 4, is_plain: true }
+    }
+
     /// Parses `name:type:width:…`; unknown columns are skipped.
-    pub(super) fn parse(text: &str) -> Result<XyzRowLayout, Vec<XyzMistakeKind>> {
+    pub(super) fn parse(text: &str, room: FrameContents) -> Result<XyzRowLayout, Vec<XyzMistakeKind>> {
         let parts: Vec<&str> = text.trim().split(':').collect();
-        let mut layout = XyzRowLayout { columns: [None; COLUMNS.len()], fields: 0 };
+        let mut layout = XyzRowLayout { columns: [None; COLUMNS.len()], fields: 0, is_plain: false };
         let mut reasons = Vec::new();
         for part in parts.chunks(3) {
             let found = part.join(":");
@@ -82,7 +101,8 @@ impl XyzRowLayout {
             }
             layout.fields = end;
         }
-        for (columns, expected) in REQUIRED {
+        let needed = if room.may_lack() { &REQUIRED[..1] } else { &REQUIRED[..] };
+        for &(columns, expected) in needed {
             // A column of the wrong shape counts as present.
             let is_named = |&column: &usize| parts.chunks(3).any(|part| part[0] == COLUMNS[column].name);
             if !columns.iter().any(is_named) {
@@ -97,9 +117,29 @@ impl XyzRowLayout {
         self.columns[ID].is_some()
     }
 
+    /// Quantities of the rows.
+    pub(super) fn quantities(&self) -> FrameColumns {
+        let has = |column: usize| self.columns[column].is_some();
+        let mass = has(MASS) || has(MASSES);
+        FrameColumns {
+            velocity: has(VELO) || has(MOMENTA),
+            radius: has(RADIUS),
+            mass,
+            has_momenta_only: !has(VELO) && has(MOMENTA) && !mass,
+        }
+    }
+
     /// Column of a quantity that two columns may provide.
     fn either(&self, first: usize, second: usize) -> usize {
         if self.columns[first].is_some() { first } else { second }
+    }
+
+    /// Error for a row whose third coordinate is not 0.
+    pub(super) fn out_of_plane(&self, text: &str, line: usize) -> Option<Mistake> {
+        let fields: Vec<&str> = text.split_ascii_whitespace().collect();
+        let row = XyzRow { layout: self, text, line, fields: &fields };
+        let [_, _, z] = row.vector(POS).ok()?;
+        row.zeros(POS, &[(2, z)]).err()
     }
 
     /// Parses a disc; its id is 0 if rows have none. `fields` is a buffer for reuse.
@@ -112,7 +152,11 @@ impl XyzRowLayout {
         fields.clear();
         fields.extend(text.split_ascii_whitespace());
         if fields.len() != self.fields {
-            let reason = XyzMistakeKind::Fields { found: fields.len(), expected: self.fields };
+            let found = fields.len();
+            let reason = match self.is_plain {
+                true => XyzMistakeKind::PlainFields { found },
+                false => XyzMistakeKind::Fields { found, expected: self.fields },
+            };
             return Err(Mistake::in_line(line, reason));
         }
         let row = XyzRow { layout: self, text, line, fields };
@@ -121,13 +165,12 @@ impl XyzRowLayout {
         let id = row.id()?;
         let moving = self.either(VELO, MOMENTA);
         let mut velocity = row.vector(moving)?;
-        if room == FrameContents::Plane {
-            row.zeros(POS, &[(2, position[2])])?;
+        if room.is_planar() {
             row.zeros(moving, &[(2, velocity[2])])?;
         }
         let radius = row.positive(RADIUS)?;
         let mass = row.positive(self.either(MASS, MASSES))?;
-        if moving == MOMENTA {
+        if moving == MOMENTA && mass > 0.0 {
             velocity = row.velocity_from_momentum(velocity, mass)?;
         }
         let omega = row.spin()?;
@@ -171,9 +214,10 @@ impl XyzRow<'_> {
         Ok(numbers)
     }
 
+    /// Number above 0; 0 if the frame lacks the column.
     fn positive(&self, column: usize) -> Result<f64, Mistake> {
         let [value] = self.vector(column)?;
-        if value > 0.0 {
+        if value > 0.0 || self.fields(column).is_empty() {
             return Ok(value);
         }
         let reason = XyzMistakeKind::NotPositive { column: COLUMNS[column].name, value };

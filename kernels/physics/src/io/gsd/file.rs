@@ -114,7 +114,7 @@ impl GsdFile {
         file.rewind()?;
         file.read_exact(&mut heading)?;
         file.read_exact(&mut names)?;
-        let said = Heading::read(&heading).ok();
+        let said = Heading::read(&heading, true).ok();
         heading[MOVES].copy_from_slice(&first[MOVES]);
         if heading != first || names != list {
             return Ok(false);

@@ -9,6 +9,8 @@ const NAMES: usize = 64;
 pub(super) const ALIGNED: u64 = 8;
 
 const MAGIC: u64 = 0x65DF_65DF_65DF_65DF;
+/// First bytes of every GSD file.
+pub(crate) const SIGNATURE: [u8; 8] = MAGIC.to_le_bytes();
 const SCHEMA: &[u8] = b"hoomd";
 const APPLICATION: &[u8] = b"stripmine";
 /// Major and minor version of the schema and of the file layer.
@@ -117,11 +119,11 @@ impl Heading {
         bytes
     }
 
-    /// Decodes the heading of a file written by this program.
+    /// Decodes the heading of a file written by this program, or by any program that writes the schema.
     ///
     /// # Errors
     /// The first wrong byte, and the expected content.
-    pub(super) fn read(bytes: &[u8; HEADING as usize]) -> Result<Heading, (u64, &'static str)> {
+    pub(super) fn read(bytes: &[u8; HEADING as usize], is_own: bool) -> Result<Heading, (u64, &'static str)> {
         let wide = |number: usize| u64::of(&bytes[8 * number..][..8]);
         let names = wide(4).checked_mul(NAMES as u64).ok_or((32, "a list of names inside the file"))?;
         let heading = Heading { index: Index { at: wide(1), capacity: wide(2) }, names: [wide(3), names] };
@@ -134,6 +136,15 @@ impl Heading {
             (APPLICATION_AT, SCHEMA_AT, "`stripmine` as the application"),
             (SCHEMA_AT, SCHEMA_END, "`hoomd` as the schema"),
         ];
+        // Other programs write other versions; their layout is that of the major version.
+        let major = u16::from_le_bytes([bytes[46], bytes[47]]);
+        if !is_own && bytes[..8] == own[..8] && !differs(SCHEMA_AT, SCHEMA_END) {
+            return if major == 2 {
+                Ok(heading)
+            } else {
+                Err((44, "version 2 of the file layer; `gsd.fl` of gsd 2 upgrades older files"))
+            };
+        }
         match checks.into_iter().find(|&(from, end, _)| differs(from, end)) {
             Some((from, _, expected)) => Err((from as u64, expected)),
             None => Ok(heading),

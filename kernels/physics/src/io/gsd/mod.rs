@@ -16,11 +16,14 @@
 
 mod error;
 mod file;
+mod foreign;
 mod layout;
 mod reader;
 mod writer;
 
 pub use error::{GsdErrorKind, GsdLocation, GsdReadError};
+pub(crate) use foreign::ForeignFrame;
+pub(crate) use layout::SIGNATURE;
 pub use reader::GsdFrames;
 pub use writer::{GsdWriter, LoggedFrame};
 

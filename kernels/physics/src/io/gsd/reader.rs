@@ -21,7 +21,7 @@ pub struct GsdFrames {
     file: File,
     /// Bytes of the file on the disk: fewer than its length if it has holes.
     on_disk: u64,
-    names: Vec<String>,
+    pub(super) names: Vec<String>,
     index: Vec<IndexEntry>,
     next: u64,
     failed: bool,
@@ -33,10 +33,21 @@ impl GsdFrames {
     /// # Errors
     /// If the system refuses to read it, or it is not such a file, or it is truncated.
     pub fn open(path: impl AsRef<Path>) -> Result<GsdFrames, GsdReadError> {
-        let path = path.as_ref().to_owned();
+        GsdFrames::open_with(path.as_ref().to_owned(), true)
+    }
+
+    /// Opens a file of any program that writes the schema `hoomd`.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open).
+    pub(crate) fn open_foreign(path: &Path) -> Result<GsdFrames, GsdReadError> {
+        GsdFrames::open_with(path.to_owned(), false)
+    }
+
+    fn open_with(path: PathBuf, is_own: bool) -> Result<GsdFrames, GsdReadError> {
         let opened = regular_file::open(&path).map_err(GsdErrorKind::Io);
         let read = opened.map_err(|reason| (GsdLocation::File, reason)).and_then(|file| {
-            let (names, index) = index(&file)?;
+            let (names, index) = index(&file, is_own)?;
             let on_disk =
                 on_disk(&file.metadata().map_err(|cause| (GsdLocation::File, GsdErrorKind::Io(cause)))?);
             Ok(GsdFrames { path: path.clone(), file, on_disk, names, index, next: 0, failed: false })
@@ -64,6 +75,11 @@ impl GsdFrames {
         frame.map(Some).map_err(|(place, reason)| GsdReadError { file: self.path.clone(), place, reason })
     }
 
+    /// Path of the file.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
     fn entry(&self, frame: u64, name: usize) -> Option<IndexEntry> {
         let key = (frame, name as u16);
         let at = self.index.binary_search_by_key(&key, |entry| (entry.frame, entry.name)).ok()?;
@@ -85,7 +101,7 @@ impl Iterator for GsdFrames {
     }
 }
 
-type LocatedGsdError = (GsdLocation, GsdErrorKind);
+pub(super) type LocatedGsdError = (GsdLocation, GsdErrorKind);
 
 /// Longest list of names (bytes): entries number names with 16 bits, and each name has at most 63 letters.
 const LONGEST_NAMES: u64 = 64 << 16;
@@ -103,7 +119,7 @@ fn on_disk(file: &Metadata) -> u64 {
 }
 
 /// Reads the names and the entries of a file.
-fn index(file: &File) -> Result<(Vec<String>, Vec<IndexEntry>), LocatedGsdError> {
+fn index(file: &File, is_own: bool) -> Result<(Vec<String>, Vec<IndexEntry>), LocatedGsdError> {
     let system = |cause: io::Error| (GsdLocation::File, GsdErrorKind::Io(cause));
     let length = file.metadata().map_err(system)?.len();
     let mut file = BufReader::new(file);
@@ -117,7 +133,8 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<IndexEntry>), LocatedGsdError>
     inside("the heading", Some(HEADING))?;
     file.read_exact(&mut bytes).map_err(system)?;
     let wrong = |byte, expected| (GsdLocation::Byte(byte), GsdErrorKind::Expected(expected));
-    let Heading { index, names } = Heading::read(&bytes).map_err(|(byte, expected)| wrong(byte, expected))?;
+    let Heading { index, names } =
+        Heading::read(&bytes, is_own).map_err(|(byte, expected)| wrong(byte, expected))?;
     let [first, length_of_names] = names;
     inside("the list of names", first.checked_add(length_of_names))?;
     if length_of_names > LONGEST_NAMES {
@@ -143,9 +160,10 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<IndexEntry>), LocatedGsdError>
             return Err(wrong(at, "an entry of the index for a chunk with a name"));
         }
         let follows = match entries.last() {
-            None => entry.frame == 0,
+            None => entry.frame == 0 || !is_own,
             Some(last) => {
-                entry.frame == last.frame && entry.name > last.name || entry.frame == last.frame + 1
+                let is_next = if is_own { entry.frame == last.frame + 1 } else { entry.frame > last.frame };
+                entry.frame == last.frame && entry.name > last.name || is_next
             }
         };
         if !follows {
@@ -164,18 +182,25 @@ fn index(file: &File) -> Result<(Vec<String>, Vec<IndexEntry>), LocatedGsdError>
 }
 
 /// Access to the chunks of a frame.
-struct Chunks<'f> {
-    frames: &'f mut GsdFrames,
-    number: u64,
+pub(super) struct Chunks<'f> {
+    pub(super) frames: &'f mut GsdFrames,
+    pub(super) number: u64,
 }
 
 impl Chunks<'_> {
-    fn wrong(&self, chunk: &'static str, reason: GsdErrorKind) -> LocatedGsdError {
+    pub(super) fn wrong(&self, chunk: &'static str, reason: GsdErrorKind) -> LocatedGsdError {
         (GsdLocation::Chunk { frame: self.number, chunk }, reason)
     }
 
+    /// Rows and columns of a chunk of the frame or, if it lacks the chunk, of the first frame.
+    pub(super) fn shape(&self, chunk: &str) -> Option<[usize; 2]> {
+        let name = self.frames.names.iter().position(|name| name == chunk)?;
+        let entry = self.frames.entry(self.number, name).or_else(|| self.frames.entry(0, name))?;
+        Some([entry.rows as usize, entry.columns as usize])
+    }
+
     /// Reads rows of a number of columns from the frame or, if it lacks the chunk, from the first frame; none if both lack it.
-    fn rows<E: GsdNumber>(
+    pub(super) fn rows<E: GsdNumber>(
         &mut self,
         chunk: &'static str,
         rows: usize,
@@ -220,7 +245,7 @@ impl Chunks<'_> {
         self.rows(chunk, rows, columns)?.ok_or_else(|| self.wrong(chunk, GsdErrorKind::Missing))
     }
 
-    fn one<E: GsdNumber>(&mut self, chunk: &'static str) -> Result<E, LocatedGsdError> {
+    pub(super) fn one<E: GsdNumber>(&mut self, chunk: &'static str) -> Result<E, LocatedGsdError> {
         Ok(self.required_rows(chunk, 1, 1)?[0])
     }
 

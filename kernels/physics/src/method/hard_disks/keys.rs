@@ -72,7 +72,8 @@ define_keys! {
 }
 
 /// Alternative durations of a run: a number of events, or a time.
-static DURATION: &[ExclusiveKeys] = &[ExclusiveKeys { keys: &[&EVENTS, &TIME], used: ALWAYS, needed: true }];
+static DURATION: &[ExclusiveKeys] =
+    &[ExclusiveKeys { keys: &[&EVENTS, &TIME], used: ALWAYS, needed: true, with: None }];
 
 /// Vocabulary of the scenes of this method.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {

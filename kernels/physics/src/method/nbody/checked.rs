@@ -1,13 +1,16 @@
 //! Checks a scene of bodies against the preconditions of the method.
 
 use super::choice;
-use super::keys::{BODIES, ENGINE, GENERATE, SOFTENING};
+use super::imported::bodies_of_file;
+use super::keys::{BODIES, ENGINE, FILE, GENERATE, SOFTENING};
 use super::options::{ForceEngine, StartKind};
 use super::scene::NbodyScene;
 use super::starts::{InitialBody, initial_bodies};
 use crate::method::Prepared;
 use crate::particles::{Particle, ParticleKind, Particles};
-use crate::scene::{MistakeKind, PRECISION, Precision, ReadBinding, SceneError, SceneErrors, SceneValues};
+use crate::scene::{
+    MistakeKind, PRECISION, Precision, ReadBinding, SceneError, SceneErrors, SceneValues, Warning,
+};
 use std::collections::HashMap;
 
 /// Smallest mass ratio in single precision: products of two such masses are still normal numbers.
@@ -19,6 +22,7 @@ pub(super) struct CheckedNbody {
     pub(super) scene: NbodyScene,
     pub(super) particles: Particles,
     pub(super) choices: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
 }
 
 /// Creates the bodies of a scene and checks every precondition.
@@ -54,10 +58,14 @@ pub(super) fn check_nbody_scene(values: SceneValues) -> Result<CheckedNbody, Sce
         errors.extend(wrong_rows(&values, &scene));
         SceneErrors::ok_if_empty(std::mem::take(&mut errors))?;
     }
-    let of = initial_bodies(&scene.start, scene.softening, scene.gravitational_constant);
+    let mut warnings = vec![];
+    let (ids, of) = match scene.start.kind {
+        StartKind::File => bodies_of_file(&values, &scene, &mut warnings)?,
+        _ => (vec![], initial_bodies(&scene.start, scene.softening, scene.gravitational_constant)),
+    };
     let radius = radius_shown(&scene, &of);
-    let all = of.iter().zip(1..).map(|(&(mass, position, velocity), id)| Particle {
-        id,
+    let all = of.iter().zip(1..).map(|(&(mass, position, velocity), number)| Particle {
+        id: ids.get(number as usize - 1).copied().unwrap_or(number),
         kind: ParticleKind::Grain,
         position,
         velocity,
@@ -75,7 +83,7 @@ pub(super) fn check_nbody_scene(values: SceneValues) -> Result<CheckedNbody, Sce
     }
     SceneErrors::ok_if_empty(errors)?;
     let choices = choice::resolve_engine(&mut scene, particles.len());
-    Ok(CheckedNbody { scene, particles, choices })
+    Ok(CheckedNbody { scene, particles, choices, warnings })
 }
 
 /// Radius for viewers, as points have none: the softening, or a hundredth of the median distance from the middle.
@@ -83,7 +91,7 @@ fn radius_shown(scene: &NbodyScene, bodies: &[InitialBody]) -> f64 {
     /// Drawn radius relative to the scale of the start.
     const SMALL: f64 = 0.01;
     let mut scale = 1.0;
-    if scene.start.kind == StartKind::List {
+    if matches!(scene.start.kind, StartKind::List | StartKind::File) {
         let count = bodies.len() as f64;
         let middle = [0, 1, 2].map(|axis| bodies.iter().map(|(_, at, _)| at[axis] / count).sum::<f64>());
         let offset = |at: &[f64; 3], axis: usize| at[axis] - middle[axis];
@@ -143,7 +151,7 @@ fn coincident(values: &SceneValues, particles: &Particles) -> Option<SceneError>
             let spot = if values.is_given(&BODIES) {
                 values.item_spot(&BODIES, number)
             } else {
-                values.spot(&GENERATE)
+                values.spot(if values.is_given(&FILE) { &FILE } else { &GENERATE })
             };
             let error = spot.error(MistakeKind::Overlap, message);
             return Some(error.advising(format!("set `{}` above 0, or move one of them", SOFTENING.path())));

@@ -1,21 +1,25 @@
 //! Keys of this method, and their constraints on each other.
 
-use super::options::{ArithmeticKind, ForceEngine, StartKind};
+use super::options::{ArithmeticKind, ForceEngine};
 use super::schemes::SchemeName;
 use crate::io::FORMATS;
 use crate::scene::Fallback::{Is, Otherwise, Required};
-use crate::scene::KeyValueKind::{Choice, Number, Rows, Whole};
+use crate::scene::KeyValueKind::{Choice, Number, Rows, Text, Whole};
 use crate::scene::NumberRange::{AtMost, Finite, NonNegative, Positive, UpTo};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DURATION, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT, STEP, STEPPED_RUN,
-    SceneError, SceneValues, TARGETED, Use, Vocabulary, too_many_steps,
+    ARITHMETIC, DURATION, ExclusiveKeys, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT, STEP,
+    STEPPED_RUN, SceneError, SceneValues, TARGETED, Use, Vocabulary, too_many_steps,
 };
 use crate::words::Words;
 
 const ALWAYS: Use = None;
-const DRAWN: Use = Some((&GENERATE, &["plummer", "sphere", "shell", "two-clusters"]));
+const GENERATORS: &[&str] = &["kepler", "figure-eight", "plummer", "sphere", "shell", "two-clusters", "list"];
+const COUNTED: Use = Some((&GENERATE, &["plummer", "sphere", "shell", "two-clusters"]));
+const DRAWN: Use = Some((&GENERATE, &["plummer", "sphere", "shell", "two-clusters", "file"]));
 const SPHERES: Use = Some((&GENERATE, &["sphere", "shell"]));
+const STIRRED: Use = Some((&GENERATE, &["sphere", "shell", "file"]));
+const READ: Use = Some((&GENERATE, &["file"]));
 const KEPLER: Use = Some((&GENERATE, &["kepler"]));
 const CLUSTERS: Use = Some((&GENERATE, &["two-clusters"]));
 const LISTED: Use = Some((&GENERATE, &["list"]));
@@ -27,14 +31,21 @@ const SWEPT: Use = Some((&ENGINE, &["auto", "fast"]));
 define_keys! {
     /// Bodies, softening, integrator and machine.
     static OWN;
-    GENERATE = "particles" "generate", Choice(StartKind::WORDS), "", Required, ALWAYS,
+    GENERATE = "particles" "generate", Choice(GENERATORS), "", Otherwise("read `file`"), ALWAYS,
         "Initial state: two bodies on an ellipse of semi-major axis 1, at the nearest point; three on the figure of eight; Plummer's sphere of scale 1; a uniform sphere or shell of radius 1; two Plummer spheres; or a list. Unless listed, the total mass is 1, the total momentum is 0, and velocities due to gravity scale with √G.";
-    COUNT = "particles" "count", Whole(2, 1_000_000), "", Is("1024"), DRAWN,
+    FILE = "particles" "file", Text, "", Otherwise("generated"), ALWAYS,
+        "Start file: XYZ (extended or plain), GSD, a LAMMPS data file or dump, or .sph; relative to the scene file. `mass` and `virial` supply what the file lacks.",
+        implies (&GENERATE, "file");
+    FRAME = "particles" "frame", Whole(0, u64::MAX), "", Otherwise("the last one"), READ,
+        "Number of the frame of the start file, from 0.";
+    MASS = "particles" "mass", Number(Positive), "mass", Otherwise("those of `file`"), READ,
+        "Mass of every body, where the file has no masses.";
+    COUNT = "particles" "count", Whole(2, 1_000_000), "", Is("1024"), COUNTED,
         "Number of bodies.";
     SEED = "particles" "seed", Whole(0, u64::MAX), "", Is("1"), DRAWN,
         "Seed of positions and velocities.";
-    VIRIAL = "particles" "virial", Number(NonNegative), "", Is("0.0"), SPHERES,
-        "Ratio of the kinetic energy of random velocities to the magnitude of the potential energy: 0.5 is equilibrium, 0 is cold.";
+    VIRIAL = "particles" "virial", Number(NonNegative), "", Otherwise("0 for spheres; velocities of `file`"), STIRRED,
+        "Ratio of the kinetic energy of random velocities to the magnitude of the potential energy: 0.5 is equilibrium, 0 is cold. With `file`: where the file has no velocities.";
     EXPANSION = "particles" "expansion", Number(Finite), "1/time", Is("0.0"), SPHERES,
         "Outward velocity over the distance from the centre.";
     ECCENTRICITY = "particles" "eccentricity", Number(UpTo(1.0)), "", Is("0.5"), KEPLER,
@@ -67,18 +78,16 @@ define_keys! {
         "Arithmetic: exact rounds every operation, to the same bits on every instruction set; estimated fuses products and sums and corrects the processor's estimate of inverse roots; raw omits the correction, to show its effect.";
 }
 
+static START: &[ExclusiveKeys] =
+    &[ExclusiveKeys { keys: &[&GENERATE, &FILE], used: ALWAYS, needed: true, with: None }];
+
 /// Vocabulary of the scenes of this method.
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "nbody",
         groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, TARGETED, OUTPUT],
-        rivals: &[DURATION],
+        rivals: &[START, DURATION],
         advice: &[
-            (
-                "particles.file",
-                "bodies have no start file: list them in particles.bodies, one row [mass, x, y, z, vx, vy, vz] each, with \
-             particles.generate = \"list\"",
-            ),
             ("integrator.step", "did you mean `integrator.dt`?"),
             ("integrator.timestep", "did you mean `integrator.dt`?"),
             ("integrator.time_step", "did you mean `integrator.dt`?"),

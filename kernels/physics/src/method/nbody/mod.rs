@@ -8,6 +8,7 @@ mod conserved;
 mod encounter;
 mod entry;
 pub mod field;
+mod imported;
 pub mod keys;
 mod monitor;
 pub mod options;

@@ -19,6 +19,8 @@ define_words! {
         TwoClusters = "two-clusters",
         /// Listed bodies.
         List = "list",
+        /// Bodies of a start file.
+        File = "file",
     }
 }
 

@@ -4,7 +4,7 @@ use super::keys::*;
 use super::options::{ArithmeticKind, ForceEngine, StartKind};
 use super::schemes::SchemeName;
 use crate::scene::{
-    Binding, Output, Precision, RunKeys, Write, bind_arithmetic, bind_execution, bind_heading,
+    Binding, Output, Precision, RunKeys, StartFile, Write, bind_arithmetic, bind_execution, bind_heading,
 };
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -31,6 +31,10 @@ pub struct NbodyStart {
     pub(crate) approach: f64,
     /// Mass, position and velocity of each listed body.
     pub bodies: Vec<Vec<f64>>,
+    /// Start file.
+    pub file: StartFile,
+    /// Ratio of energies for velocities that the file lacks.
+    pub(crate) file_virial: Option<f64>,
 }
 
 /// Scene of the method, in its own units; `units` names them.
@@ -81,6 +85,8 @@ impl Default for NbodyScene {
                 separation: 8.0,
                 approach: 0.3,
                 bodies: vec![],
+                file: StartFile::default(),
+                file_virial: None,
             },
             softening: 0.0,
             gravitational_constant: 1.0,
@@ -107,6 +113,14 @@ impl NbodyStart {
                 binding.number(&MASS_RATIO, &mut self.mass_ratio);
             }
             StartKind::FigureEight => {}
+            StartKind::File => {
+                self.file.bind_frame(binding, &FILE, &FRAME);
+                binding.number_if_any(&MASS, &mut self.file.supplied.mass);
+                binding.number_if_any(&VIRIAL, &mut self.file_virial);
+                if self.file_virial.is_some() {
+                    binding.whole(&SEED, &mut self.seed);
+                }
+            }
             StartKind::List => binding.rows(&BODIES, &mut self.bodies),
             StartKind::Plummer | StartKind::Sphere | StartKind::Shell | StartKind::TwoClusters => {
                 binding.count(&COUNT, &mut self.count);
@@ -125,7 +139,11 @@ impl NbodyStart {
 
     /// True if the start is drawn from random numbers.
     pub fn is_drawn(&self) -> bool {
-        !matches!(self.kind, StartKind::Kepler | StartKind::FigureEight | StartKind::List)
+        match self.kind {
+            StartKind::Kepler | StartKind::FigureEight | StartKind::List => false,
+            StartKind::File => self.file_virial.is_some(),
+            _ => true,
+        }
     }
 }
 

@@ -17,6 +17,8 @@ pub fn initial_bodies(start: &NbodyStart, softening: f64, constant: f64) -> Vec<
     match start.kind {
         StartKind::Kepler => scale_velocities(kepler(start.eccentricity, start.mass_ratio), root),
         StartKind::FigureEight => scale_velocities(figure_eight(), root),
+        // Read by the check of the scene.
+        StartKind::File => vec![],
         StartKind::List => {
             let body = |row: &Vec<f64>| (row[0], [row[1], row[2], row[3]], [row[4], row[5], row[6]]);
             start.bodies.iter().map(body).collect()
@@ -24,7 +26,7 @@ pub fn initial_bodies(start: &NbodyStart, softening: f64, constant: f64) -> Vec<
         StartKind::Plummer => centred(scale_velocities(plummer(0..start.count, start.seed), root)),
         StartKind::Sphere | StartKind::Shell => {
             let mut bodies = centred(sphere(start));
-            stir(&mut bodies, start, softening, constant);
+            stir(&mut bodies, [start.virial, softening, constant], start.seed);
             bodies
         }
         StartKind::TwoClusters => two_clusters(start, root),
@@ -109,8 +111,8 @@ fn sphere(start: &NbodyStart) -> Vec<InitialBody> {
 }
 
 /// Adds random velocities whose kinetic energy is the given fraction of the potential energy.
-fn stir(bodies: &mut [InitialBody], start: &NbodyStart, softening: f64, constant: f64) {
-    if start.virial == 0.0 {
+pub(super) fn stir(bodies: &mut [InitialBody], [virial, softening, constant]: [f64; 3], seed: u64) {
+    if virial == 0.0 {
         return;
     }
     let potential = constant * potential(bodies, softening);
@@ -118,7 +120,7 @@ fn stir(bodies: &mut [InitialBody], start: &NbodyStart, softening: f64, constant
         .map(|number| {
             let [a, b] = [1, 2].map(|step| {
                 stripmine_kernels::noise::normals(
-                    start.seed,
+                    seed,
                     RandomPurpose::Placement,
                     number as u32 + 1,
                     1 << 32 | step,
@@ -129,7 +131,7 @@ fn stir(bodies: &mut [InitialBody], start: &NbodyStart, softening: f64, constant
         .collect();
     let kinetic: f64 =
         bodies.iter().zip(&drawn).map(|((m, ..), v)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum();
-    let scale = (start.virial * -potential / kinetic).sqrt();
+    let scale = (virial * -potential / kinetic).sqrt();
     for ((.., velocity), drawn) in bodies.iter_mut().zip(drawn) {
         (0..3).for_each(|axis| velocity[axis] += scale * drawn[axis]);
     }

@@ -100,8 +100,14 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
     let mut errors = Vec::new();
     let mut choices: Vec<String> = choice::engine(&mut document.scene).into_iter().collect();
     let GranularDocument { scene, values } = &document;
-    let stated =
-        StatedStart { values, domain: &scene.domain, start: &scene.start, walls: scene.walls, compress };
+    let stated = StatedStart {
+        values,
+        domain: &scene.domain,
+        start: &scene.start,
+        walls: scene.walls,
+        conserved: scene.domain.periodic,
+        compress,
+    };
     let made = match start::create_initial_state(&stated) {
         Ok(made) => Some(made),
         Err(error) => {
