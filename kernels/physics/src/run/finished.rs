@@ -167,12 +167,12 @@ impl FinishedRun {
     }
 
     /// Lines of the scene that determine the physics.
-    fn physics(&self) -> Vec<&str> {
+    pub(super) fn physics(&self) -> Vec<&str> {
         physics(&self.scene)
     }
 
     /// Checks that another run has the same scene with another seed.
-    fn check_joinable(&self, other: &FinishedRun) -> Result<(), FinishedError> {
+    pub(super) fn check_joinable(&self, other: &FinishedRun) -> Result<(), FinishedError> {
         let (first, other_folder) = (self.folder.clone(), other.folder.clone());
         if self.physics() == other.physics() {
             return Err(FinishedError::Twice { first, other: other_folder });
