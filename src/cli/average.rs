@@ -12,7 +12,7 @@ use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
-use stripmine_physics::io::owned_folder::names_in;
+use stripmine_physics::io::owned_folder::{FolderKind, names_in};
 use stripmine_physics::method::{Methods, method};
 use stripmine_physics::number::{count_with_noun, significant, with_error_bar};
 use stripmine_physics::run::{
@@ -123,20 +123,26 @@ impl AverageVerb {
         if self.csv {
             return print(&table.csv()?);
         }
-        let shown = table.terminal_table(&self.of, &main_quantities(entry), units);
-        print(&terminal::render(&shown.note(table.extent())))
+        print(&table.text(&self.of, &main_quantities(entry), units, table.extent()))
     }
 }
 
 /// Folders of the runs that some paths name. A folder of several runs stands for all of them; files of this program beside runs are left out.
 fn folders_of_runs(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFailure> {
-    let holds_runs = |folder: &Path| [SEEDS, SCAN].iter().any(|kind| folder.join(kind.list).is_file());
+    let has = |folder: &Path, kinds: &[FolderKind]| kinds.iter().any(|kind| folder.join(kind.list).is_file());
+    let has_list = |folder: &Path| has(folder, &[SEEDS, SCAN]);
+    // A point of a scan is a run, or holds one for each seed.
+    let is_point = |folder: &Path| {
+        folder.is_dir()
+            && !folder.join("thermo.csv").is_file()
+            && folder.parent().is_some_and(|above| has(above, &[SCAN]))
+    };
     let mut folders = vec![];
     for path in paths.iter().map(|path| run_folder(path)) {
-        if holds_runs(&path) {
+        if has_list(&path) || is_point(&path) {
             let below = names_in(&path)?.unwrap_or_default().into_iter().map(|name| path.join(name));
             folders.extend(folders_of_runs(&below.filter(|it| it.is_dir()).collect::<Vec<_>>())?);
-        } else if !(path.is_file() && path.parent().is_some_and(holds_runs)) {
+        } else if !(path.is_file() && path.parent().is_some_and(has_list)) {
             folders.push(path);
         }
     }

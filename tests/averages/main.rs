@@ -94,7 +94,11 @@ fn only_runs_with_different_seeds_are_joined() {
     assert!((rate("bar") / (12.706 * 0.5 * (a - b).abs()) - 1.0).abs() < 1e-4, "{joined:#}");
     ends_with(&stripmine(folder, &["average", "a", "c"]), 2, &["are the same run", "its own seed"]);
     ends_with(&run(folder, "d", &["--set", "run.events=2000", "--set", "law.restitution=0.99"]), 0, &[]);
-    ends_with(&stripmine(folder, &["average", "a", "d", "--structure", "msd"]), 2, &["written no msd"]);
+    ends_with(
+        &stripmine(folder, &["average", "a", "d", "--structure", "msd"]),
+        2,
+        &["a and d have different scenes"],
+    );
     ends_with(&stripmine(folder, &["average", "none"]), 5, &["none/thermo.csv"]);
     fs::create_dir(folder.join("odd")).unwrap();
     fs::write(folder.join("odd/thermo.csv"), "step,time,colour\n0,0.0,1.0\n").unwrap();

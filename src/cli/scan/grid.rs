@@ -21,7 +21,7 @@ pub(super) struct ScanKey {
 
 /// Point of a grid.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct GridPoint {
+pub(super) struct ScanPoint {
     /// Name of its folder.
     pub(super) name: String,
     /// Override of each key.
@@ -174,7 +174,7 @@ pub(super) fn value_text(value: &Value) -> String {
 }
 
 /// Points of the grid; the values of the last key vary fastest.
-pub(super) fn grid(keys: &[ScanKey]) -> Vec<GridPoint> {
+pub(super) fn grid(keys: &[ScanKey]) -> Vec<ScanPoint> {
     let mut points: Vec<Vec<&str>> = vec![vec![]];
     for key in keys {
         let mut extended = vec![];
@@ -189,7 +189,7 @@ pub(super) fn grid(keys: &[ScanKey]) -> Vec<GridPoint> {
         let values: Vec<Value> = texts.iter().map(|text| value(text)).collect();
         let parts = labels.iter().zip(&values).map(|(label, value)| format!("{label}={}", value_text(value)));
         let overrides = keys.iter().zip(texts).map(|(key, text)| format!("{}={text}", key.path)).collect();
-        GridPoint { name: folder_name(&parts.collect::<Vec<_>>().join(","), &mut taken), overrides, values }
+        ScanPoint { name: folder_name(&parts.collect::<Vec<_>>().join(","), &mut taken), overrides, values }
     };
     points.into_iter().map(point).collect()
 }

@@ -2,33 +2,27 @@
 
 mod charts;
 mod grid;
+mod points;
 mod table;
 
 pub(super) use table::{KeyTable, TableKey, TablePoint, check_names};
 
 use super::display::UnitSystem;
 use super::run::MOST_SEEDS;
-use super::run::seeds::{seed_keys, seeded_runs};
-use super::run::side_by_side::{FailedRun, PlannedRun, SideBySide};
-use crate::console::{CommandFailure, Common, count_up_to, print, print_json, print_message, to_json};
+use super::run::side_by_side::{PlannedRun, SideBySide};
+use crate::console::{CommandFailure, Common, count_up_to, print, print_json, print_message, to_json, warn};
 use crate::report::figure::svg;
-use crate::report::terminal;
 use clap::Args;
-use grid::{GridPoint, ScanKey, grid, scan_keys};
+use grid::{ScanKey, scan_keys};
+use points::{CheckedPoint, table_point};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use stripmine_physics::averages::joined;
-use stripmine_physics::input::MistakeList;
 use stripmine_physics::io::owned_folder::{FolderContent, FolderKind, LOCK, OwnedFolder};
-use stripmine_physics::memory::MemoryForecast;
 use stripmine_physics::method::{MethodEntry, Methods, Prepared, QuantityKind, prepare, vocabularies};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{ErrorClass, Reported};
-use stripmine_physics::run::{
-    ExistingRun, FinishedRun, Summary, averages_of, check_scene_of_folder, starts_from_beginning,
-};
+use stripmine_physics::run::{ExistingRun, check_scene_of_folder, starts_from_beginning};
 use stripmine_physics::scene::{MeanTarget, MistakeKind, SceneErrors, SceneValues, Spot, Width};
-use toml::Value;
 
 /// Table as comma-separated values, and as JSON.
 const CSV: &str = "scan.csv";
@@ -78,16 +72,6 @@ pub(super) struct ScanVerb {
     /// Replaces existing runs of these points
     #[arg(long)]
     overwrite: bool,
-}
-
-/// Point of a scan that was checked.
-struct CheckedPoint {
-    point: GridPoint,
-    runs: Vec<PlannedRun>,
-    memory: MemoryForecast,
-    entry: &'static MethodEntry,
-    /// Resolved scene of its first run.
-    scene: String,
 }
 
 /// Some points of a scan have failed.
@@ -150,8 +134,8 @@ impl ScanVerb {
         if common.json {
             print_json(&table)?;
         } else {
-            let shown = table.terminal_table(&self.of, &self.main_quantities(entry), &units);
-            print(&terminal::render(&shown.note(format!("{}: {}", table.extent(), quoted::path(&folder)))))?;
+            let note = format!("{}: {}", table.extent(), quoted::path(&folder));
+            print(&table.text(&self.of, &self.main_quantities(entry), &units, note))?;
         }
         match table.failed() {
             0 => Ok(()),
@@ -204,82 +188,6 @@ impl ScanVerb {
         SceneErrors::ok_if_empty(mistakes).map(|()| overrides)
     }
 
-    /// Checks the scenes of all points, so that every mistake is reported before anything runs.
-    ///
-    /// # Errors
-    /// The mistakes of all scenes, each once.
-    fn checked_points(
-        &self,
-        keys: &[ScanKey],
-        folder: &Path,
-        values: &dyn Fn(&[String]) -> Result<SceneValues, SceneErrors>,
-        methods: Methods,
-    ) -> Result<Vec<CheckedPoint>, CommandFailure> {
-        let (mut checked, mut refused) = (vec![], vec![]);
-        for point in grid(keys) {
-            match self.checked_point(&point, keys, folder, values, methods) {
-                Ok(point) => checked.push(point),
-                Err(errors) => refused.push((point, errors)),
-            }
-        }
-        let kinds = |point: &CheckedPoint| point.entry.vocabulary.keys.method;
-        if let Some(other) = checked.iter().find(|point| kinds(point) != kinds(&checked[0])) {
-            let spot = Spot { file: "--over".to_owned(), place: None };
-            let message =
-                format!("the points have different methods: {} and {}", kinds(&checked[0]), kinds(other));
-            let error = spot.error(MistakeKind::Contradiction, message);
-            return Err(CommandFailure::Options(
-                error.advising("scan the scene of each method by itself").into(),
-            ));
-        }
-        all_mistakes(&refused, self.until.as_deref(), &self.scene)?;
-        Ok(checked)
-    }
-
-    fn checked_point(
-        &self,
-        point: &GridPoint,
-        keys: &[ScanKey],
-        folder: &Path,
-        values: &dyn Fn(&[String]) -> Result<SceneValues, SceneErrors>,
-        methods: Methods,
-    ) -> Result<CheckedPoint, SceneErrors> {
-        let scene = values(&point.overrides)?;
-        let seeds = match methods.iter().find(|method| method.vocabulary.keys.method == scene.method()) {
-            Some(method) if self.seeds.is_some() => seed_keys(&scene, method.vocabulary),
-            _ => vec![],
-        };
-        let folder = folder.join(&point.name);
-        let mut runs = match self.seeds {
-            None => vec![PlannedRun { folder, overrides: vec![] }],
-            Some(count) => {
-                let scanned = seeds
-                    .iter()
-                    .map(|(key, _)| key.path())
-                    .find(|path| keys.iter().any(|key| key.path == *path));
-                let refusal = match scanned {
-                    _ if seeds.is_empty() => {
-                        Some("this scene has no random numbers: every seed gives the same run".to_owned())
-                    }
-                    Some(path) => Some(format!("--seeds varies `{path}`, which --over gives too")),
-                    None => None,
-                };
-                if let Some(message) = refusal {
-                    let spot = Spot { file: "--seeds".to_owned(), place: None };
-                    return Err(spot.error(MistakeKind::Unused, message).into());
-                }
-                seeded_runs(&seeds, count, &folder)
-            }
-        };
-        for run in &mut runs {
-            run.overrides = [point.overrides.as_slice(), &run.overrides].concat();
-        }
-        let (prepared, entry) = prepare(values(&runs[0].overrides)?, methods)?;
-        prepared.memory.fits(&self.scene)?;
-        let Prepared { memory, scene, .. } = prepared;
-        Ok(CheckedPoint { point: point.clone(), runs, memory, entry, scene })
-    }
-
     /// Folder of the scan, with the names of its table and charts, once no run is refused.
     fn claimed_folder(&self, folder: &Path, points: &[CheckedPoint]) -> Result<OwnedFolder, CommandFailure> {
         let charts: Vec<String> = points[0]
@@ -318,7 +226,7 @@ impl ScanVerb {
                 Ok(text) => {
                     drop(own.write(&charts::file_name(&figure.name), |out| out.write_all(text.as_bytes()))?)
                 }
-                Err(error) if !common.quiet => print_message(format_args!("warning: {error}")),
+                Err(error) if !common.quiet => warn(error),
                 Err(_) => {}
             }
         }
@@ -370,79 +278,4 @@ fn table_keys(keys: &[ScanKey], entry: &'static MethodEntry) -> Vec<TableKey> {
 pub(super) fn unit_of(path: &str, entry: &'static MethodEntry) -> &'static str {
     let (section, name) = path.split_once('.').unwrap_or(("", path));
     entry.vocabulary.keys.key(section, name).map_or("", |key| key.unit)
-}
-
-/// Row of a point.
-///
-/// # Errors
-/// A failure that is not of the point: an interruption, a folder of others, a full disk.
-fn table_point(
-    checked: &CheckedPoint,
-    keys: &[ScanKey],
-    outcomes: Vec<Result<Summary, FailedRun>>,
-    methods: Methods,
-) -> Result<TablePoint, CommandFailure> {
-    let resolved: Option<toml::Table> = checked.scene.parse().ok();
-    let value = |(key, typed): (&ScanKey, &Value)| {
-        let (section, name) = key.path.split_once('.')?;
-        let found = resolved.as_ref().and_then(|scene| scene.get(section)?.get(name)).unwrap_or(typed);
-        Some(found.clone())
-    };
-    let values = keys.iter().zip(&checked.point.values).map(value).collect();
-    let folders = checked.runs.iter().map(|run| run.folder.display().to_string()).collect();
-    let (mut means, mut failure, mut is_complete) = (vec![], None, true);
-    for outcome in outcomes {
-        match outcome {
-            Ok(summary) => means.push(summary.averages),
-            Err(FailedRun { failure: error, has_means }) => {
-                let is_of_point = [ErrorClass::Precondition, ErrorClass::Input, ErrorClass::Checkpoint];
-                if error.class().is_none_or(|class| !is_of_point.contains(&class)) {
-                    return Err(error);
-                }
-                is_complete &= has_means;
-                failure = failure.or(Some(error.report()));
-            }
-        }
-    }
-    let averages = match (&failure, is_complete) {
-        (None, _) => Some(joined(&means)),
-        (Some(_), true) => {
-            let read = checked.runs.iter().map(|run| FinishedRun::read(&run.folder, methods));
-            Some(averages_of(&read.collect::<Result<Vec<_>, _>>()?)?)
-        }
-        (Some(_), false) => None,
-    };
-    Ok(TablePoint { values, folders, averages, failure })
-}
-
-/// All mistakes of the scenes that were refused, each once, with the options as they were given.
-///
-/// # Errors
-/// If there is any.
-fn all_mistakes(
-    refused: &[(GridPoint, SceneErrors)],
-    until: Option<&str>,
-    scene: &str,
-) -> Result<(), SceneErrors> {
-    let mut list = MistakeList::default();
-    let mut known = vec![];
-    for (point, errors) in refused {
-        for error in &errors.0 {
-            let own = point.overrides.iter().find(|text| error.file == format!("--set {text}"));
-            let mut error = error.clone();
-            if let Some(text) = own {
-                error.file = format!("--over {text}");
-            } else if let Some(until) = until.filter(|_| error.file.starts_with(&format!("--set {UNTIL}="))) {
-                error.file = format!("--until {until}");
-            } else if refused.iter().any(|(_, others)| !others.0.contains(&error)) {
-                error.message = format!("{}: {}", point.overrides.join(", "), error.message);
-            }
-            let same = (error.message.clone(), error.expected.clone());
-            if !known.contains(&same) {
-                known.push(same);
-                list.push(error);
-            }
-        }
-    }
-    list.ok_without_mistakes(scene)
 }

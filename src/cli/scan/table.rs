@@ -4,7 +4,7 @@ use super::grid::{labels, value_text};
 use crate::cli::display::UnitSystem;
 use crate::console::{CommandFailure, FailureReport};
 use crate::frame::{FrameColumn, FrameValue, ResultFrame, Role, csv};
-use crate::report::{FormattedTable, FrameBuilder};
+use crate::report::{FormattedTable, FrameBuilder, terminal};
 use serde::Serialize;
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::method::{ObservedQuantity, QuantityKind};
@@ -13,8 +13,6 @@ use stripmine_physics::scene::{MistakeKind, SceneErrors, Spot};
 use stripmine_physics::words::nearest;
 use toml::Value;
 
-/// Width of the table in the terminal (characters).
-const WIDTH: usize = 80;
 /// Blanks around the text of a column.
 const BESIDE: usize = 2;
 
@@ -134,13 +132,19 @@ impl KeyTable {
         format!("Means ± 95 % over {}", keys.join(" and "))
     }
 
-    /// Table for the terminal: the quantities `of`, or as many of `main` and then the others as fit into 80 columns.
-    pub(in crate::cli) fn terminal_table(
+    /// Text for the terminal: the quantities `of`, or as many of `main` and then the others as fit into 80 columns; and a note.
+    pub(in crate::cli) fn text(
         &self,
         of: &[String],
         main: &[&str],
         units: &UnitSystem,
-    ) -> FormattedTable {
+        note: String,
+    ) -> String {
+        let table = self.terminal_table(of, main, units).note(note);
+        if of.is_empty() { terminal::render_narrow(&table) } else { terminal::render(&table) }
+    }
+
+    fn terminal_table(&self, of: &[String], main: &[&str], units: &UnitSystem) -> FormattedTable {
         let mut known = self.quantities();
         let rank = |names: &[&str], it: &TableQuantity| {
             names.iter().position(|name| *name == it.name).unwrap_or(names.len())
@@ -153,7 +157,7 @@ impl KeyTable {
             let mut width: usize = self.key_columns(units).iter().map(|cells| width_of(cells)).sum();
             let fits = |it: &TableQuantity| {
                 width += width_of(&self.cells(it, units));
-                width <= WIDTH
+                width <= terminal::NARROW
             };
             known.iter().cloned().take_while(fits).collect::<Vec<_>>()
         } else {

@@ -1,6 +1,6 @@
 //! Finished runs: their rows, their scenes, and averages over several of them.
 
-use super::folder::{SCENE, THERMO};
+use super::folder::{LONGEST_SCENE, SCENE, THERMO};
 use super::identity::{first_difference, physics};
 use super::table::{TableError, TableReader};
 use crate::averages::{AveragedRows, RunAverages, joined};
@@ -9,9 +9,6 @@ use crate::method::{Methods, ObservedQuantity, observer};
 use crate::quoted;
 use crate::reported::{ErrorClass, FilePlace, Reported};
 use std::path::{Path, PathBuf};
-
-/// Longest scene (bytes).
-pub(super) const LONGEST_SCENE: u64 = 64 << 20;
 
 /// Reason why runs have no averages.
 #[derive(Debug, thiserror::Error)]

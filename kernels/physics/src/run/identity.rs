@@ -1,7 +1,6 @@
 //! Identity of a run: its scene, its discs, and the program as far as it determines the bits.
 
-use super::finished::LONGEST_SCENE;
-use super::folder::SCENE;
+use super::folder::{LONGEST_SCENE, SCENE};
 use super::{RunError, RunJob};
 use crate::io::checkpoint::{Checkpoint, CheckpointCounter};
 use crate::io::regular_file;

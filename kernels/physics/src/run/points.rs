@@ -54,9 +54,10 @@ pub fn points_of(runs: &[FinishedRun]) -> Result<ScenePoints, FinishedError> {
         all.iter().map(|own| all.iter().position(|other| other == own).unwrap_or_default()).collect()
     };
     let whole = classes(&keys);
-    for key in keys.clone() {
+    let choices = CHOICES.iter().flat_map(|section| keys.iter().filter(move |key| key.starts_with(section)));
+    for key in choices.cloned().collect::<Vec<_>>() {
         let rest: Vec<String> = keys.iter().filter(|other| **other != key).cloned().collect();
-        if CHOICES.iter().any(|section| key.starts_with(section)) && classes(&rest) == whole {
+        if classes(&rest) == whole {
             keys = rest;
         }
     }
