@@ -31,7 +31,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "scan",
         &[
             (
-                "stripmine scan hard-disks --over particles.packing_fraction=0.05:0.69:20 --until compressibility=1%",
+                "stripmine scan hard-disks --over particles.packing_fraction=0.05:0.65:20 --until compressibility=1%",
                 "finds Z at 20 packing fractions to 1 %",
             ),
             (

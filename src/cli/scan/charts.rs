@@ -34,7 +34,7 @@ fn figure(table: &KeyTable, quantity: &TableQuantity, units: &UnitSystem) -> Fig
         others.collect::<Vec<_>>().join(", ")
     };
     let mut labels: Vec<String> = vec![];
-    for point in &table.points {
+    for point in table.points.iter().filter(|point| mean(point.outcome(quantity)).is_some()) {
         let label = label(point);
         if !labels.contains(&label) {
             labels.push(label);

@@ -1,6 +1,6 @@
 //! Means over the keys of a scan: one table as text, as CSV and as JSON.
 
-use super::grid::{labels, value_text};
+use super::grid::{labels, number, value_text};
 use crate::cli::display::UnitSystem;
 use crate::console::{CommandFailure, FailureReport};
 use crate::frame::{FrameColumn, FrameValue, ResultFrame, Role, csv};
@@ -13,8 +13,10 @@ use stripmine_physics::scene::{MistakeKind, SceneErrors, Spot};
 use stripmine_physics::words::nearest;
 use toml::Value;
 
-/// Blanks around the text of a column.
-const BESIDE: usize = 2;
+/// Significant digits of a key's value in the terminal.
+const DIGITS: usize = 6;
+/// Blanks around the text of a column, and between two of them.
+const BESIDE: usize = 3;
 
 /// Means over keys.
 #[derive(Clone, Debug, Serialize)]
@@ -95,7 +97,7 @@ impl KeyTable {
         }
         columns.push(column("runs".to_owned(), "", Role::Count));
         columns.push(column("failure".to_owned(), "", Role::Words));
-        let number = |value: Option<f64>| value.map_or(FrameValue::Nothing, FrameValue::Number);
+        let cell = |value: Option<f64>| value.map_or(FrameValue::Nothing, FrameValue::Number);
         let row = |point: &TablePoint| {
             let mut row: Vec<FrameValue> =
                 (0..self.keys.len()).map(|key| key_cell(point.values[key].as_ref())).collect();
@@ -105,7 +107,7 @@ impl KeyTable {
                     Some(AverageOutcome::Mean(estimate)) => Some(of(estimate)),
                     _ => None,
                 };
-                row.extend([mean(outcome), error(|it| it.bar), error(|it| it.standard_error)].map(number));
+                row.extend([mean(outcome), error(|it| it.bar), error(|it| it.standard_error)].map(cell));
             }
             row.push(FrameValue::Count(point.folders.len() as u64));
             row.push(
@@ -182,7 +184,11 @@ impl KeyTable {
     /// Heading and texts of each key.
     fn key_columns(&self, units: &UnitSystem) -> Vec<Vec<String>> {
         let headings = self.key_headings(units).into_iter().enumerate();
-        let texts = |at: usize| self.points.iter().map(move |point| point.value_text(at));
+        let short = |point: &TablePoint, at: usize| match point.values[at].as_ref().and_then(number) {
+            Some(number) => significant(number, DIGITS),
+            None => point.value_text(at),
+        };
+        let texts = |at: usize| self.points.iter().map(move |point| short(point, at));
         headings.map(|(at, heading)| std::iter::once(heading).chain(texts(at)).collect()).collect()
     }
 
@@ -259,7 +265,7 @@ pub(super) fn mean(outcome: Option<&AverageOutcome>) -> Option<f64> {
 fn key_cell(value: Option<&Value>) -> FrameValue {
     match value {
         None => FrameValue::Nothing,
-        Some(value) => match super::grid::number(value) {
+        Some(value) => match number(value) {
             Some(number) => FrameValue::Number(number),
             None => FrameValue::Words(value_text(value)),
         },
