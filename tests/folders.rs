@@ -370,8 +370,10 @@ fn no_verb_overwrites_foreign_files() {
     let there = folder.path().join("there");
     succeed(run(&there, &["--set", "run.thermo_every=5"]));
     let there = there.to_str().unwrap();
-    let verbs: [(&[&str], &str); 11] = [
+    let verbs: [(&[&str], &str); 13] = [
         (&["run", "two-discs"], "thermo.csv"),
+        (&["scan", "two-discs", "--over", "run.steps=20"], "scan.csv"),
+        (&["scan", "two-discs", "--over", "run.steps=20"], "steps=20"),
         (&["plot", there], "last-state.png"),
         (&["plot", there], "plot.files"),
         (&["reproduce", "--only", "mask"], "README.md"),
@@ -399,7 +401,7 @@ fn no_verb_overwrites_foreign_files() {
     refused(command, 2, &["host.toml", "--force"]);
     // The list is complete: a verb with an --out that is not tried here fails this.
     let tried = ["run", "plot", "reproduce", "chart stability", "chart work-precision", "chart density-cost"];
-    let more = ["chart soft-hard", "chart accuracy", "validate-model", "calibrate", "emit"];
+    let more = ["scan", "chart soft-hard", "chart accuracy", "validate-model", "calibrate", "emit"];
     let tried = [&tried[..], &more].concat();
     let help = |verb: &[&str]| {
         String::from_utf8(stripmine(&[verb, &["--help"]].concat()).output().unwrap().stdout).unwrap()

@@ -190,6 +190,19 @@ impl Scene {
         study(slf, "accuracy", given, options)
     }
 
+    /// Table of `stripmine scan`.
+    #[pyo3(
+        signature = (*given, **options),
+        text_signature = "($self, over, seeds=1, until=None, *, out=None, resume=False, overwrite=False, command=None)"
+    )]
+    fn scan<'py>(
+        slf: &Bound<'py, Self>,
+        given: &Bound<'py, PyTuple>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        study(slf, "scan", given, options)
+    }
+
     fn __repr__(&self) -> String {
         let particles = self.checked.prepared.particles().len();
         format!("<Scene {}: {}, {particles} particles>", self.source.name(), self.method())

@@ -244,6 +244,31 @@ class Scene:
         resumed; without it nothing is stored. `of`, `error`, `window`, `command` and exceptions are as in `explain`.
         """
 
+    def scan(
+        self,
+        over: dict[str, Any],
+        seeds: int = 1,
+        until: str | None = None,
+        *,
+        out: str | os.PathLike[str] | None = None,
+        resume: bool = False,
+        overwrite: bool = False,
+        command: str | os.PathLike[str] | None = None,
+    ) -> Table:
+        """Runs the scene over one or more keys, side by side on all cores: the table of `stripmine scan`.
+
+        `over` has a list or an array of values for each key: `{"particles.packing_fraction": [0.1, 0.2]}`; several keys make a grid.
+        `seeds` is the number of runs at each point, whose means are joined. `until` ends each run once the mean of a quantity has an error
+        (95 % confidence), such as "compressibility=1%"; the duration of the scene is the latest end.
+
+        A row for each point: the keys; for each quantity with a mean its name, with `_error_95` half of its 95 % interval, and with
+        `_standard_error` its standard error (`rate_of_` before the name of a counter); the number of `runs`; and `failure`, empty if none
+        failed. Missing values are NaN.
+
+        `out` is a folder for the runs, the table and charts; without it nothing is kept. `resume` finishes what is left of a scan in the
+        folder, and adds points; `overwrite` replaces its runs. Needs the command, as `explain` does. Raises `Error` if a scene is refused.
+        """
+
 @final
 class Simulation:
     """Running simulation, advanced step by step. Two threads cannot use it at the same time: the second gets `BusyError`."""

@@ -38,6 +38,45 @@ def accuracy(scene, of=None, error=None, *, window=None, budget=60, out=None, co
     return {name: _table(fields[f"{name}.csv"], rows[name]) for name in rows}
 
 
+def scan(scene, over, seeds=1, until=None, *, out=None, resume=False, overwrite=False, command=None):
+    """The means over some keys that the command finds, as one table."""
+    with tempfile.TemporaryDirectory(prefix="stripmine-") as folder:
+        out = Path(folder, "scan") if out is None else Path(out).absolute()
+        options = {"seeds": seeds if seeds > 1 else None, "until": until, "out": out}
+        flags = [f"--{name}" for name, given in {"resume": resume, "overwrite": overwrite}.items() if given]
+        axes = [f"--over={key}={_listed(key, values)}" for key, values in over.items()]
+        scanned = _printed(scene, ["scan"], options, None, Path(folder), command, [*axes, *flags], is_partial=True)
+    points = scanned["points"]
+    columns = [(it["key"], it["unit"], [point["values"][at] for point in points]) for at, it in enumerate(scanned["keys"])]
+    columns = [(name, unit, _type(values), values) for name, unit, values in columns]
+    for name, unit, values in _means(points):
+        columns.append((name, unit, "numbers", values))
+    reasons = [(point["failure"] or {}).get("message", "") for point in points]
+    columns += [("runs", "", "counts", [len(point["folders"]) for point in points]), ("failure", "", "words", reasons)]
+    return _stripmine._table(columns)
+
+
+def _listed(key, values):
+    """Values of a key as the command takes them."""
+    texts = [json.dumps(value.item() if hasattr(value, "item") else value) for value in values]
+    if not texts:
+        raise ValueError(f"{key} has no values: expected a list of at least one")
+    return ",".join(texts)
+
+
+def _means(points):
+    """Columns of all quantities that have a mean, or are constant, at a point: the mean, and the errors that it has."""
+    averages = [point["averages"] for point in points]
+    for at, quantity in enumerate(next(filter(None, averages), {"quantities": []})["quantities"]):
+        found = [it["quantities"][at] if it else {} for it in averages]
+        # Other outcomes than a mean have numbers of the same names.
+        found = [it if it.get("says") in ("mean", "constant") else {} for it in found]
+        if any(found):
+            name = f"rate_of_{quantity['quantity']}" if quantity["of"] == "rate" else quantity["quantity"]
+            for ending, key in [("", "mean"), ("_error_95", "bar"), ("_standard_error", "standard_error")]:
+                yield name + ending, quantity["unit"], [it.get(key) for it in found]
+
+
 def _table(fields, rows):
     """Rows as a table, with the units of their fields."""
     columns = [(field["name"], field.get("unit", ""), [row[field["name"]] for row in rows]) for field in fields]
@@ -51,17 +90,17 @@ def _type(values):
     return "counts" if values and all(isinstance(value, int) for value in values) else "numbers"
 
 
-def _printed(scene, verb, options, window, folder, command):
+def _printed(scene, verb, options, window, folder, command, more=(), is_partial=False):
     """The JSON that a verb of the command prints for a scene. The command runs in an existing folder with the scene file."""
     options = [f"--{name}={value}" for name, value in options.items() if value is not None]
     if window is not None:
         options += ["--window", *map(str, window)]
     (folder / _SCENE).write_text(scene.toml(), encoding="utf-8")
-    return printed_data([*verb, _SCENE, *options], folder, command)
+    return printed_data([*verb, _SCENE, *options, *more], folder, command, is_partial)
 
 
-def printed_data(arguments, folder, command):
-    """The JSON that the command prints in a folder."""
+def printed_data(arguments, folder, command, is_partial=False):
+    """The JSON that the command prints in a folder. A partial result counts, although the command fails."""
     program = _program(command)
     code, printed, said = _run([program, *arguments, "--json"], folder)
     for line in said.splitlines():
@@ -71,7 +110,7 @@ def printed_data(arguments, folder, command):
         data = json.loads(printed)
     except ValueError:
         data = {}
-    if code == 0 and data:
+    if data and (code == 0 or is_partial and "error" not in data):
         return data
     # A plan has a number under this name.
     failure = data.get("error")

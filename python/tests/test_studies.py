@@ -84,6 +84,21 @@ class Commands(InFolder):
         self.assertEqual(self.scene.explain(command=command), {"arguments": "explain scene.toml --json"})
 
     @SHELL
+    def test_values_of_a_scan_are_passed(self):
+        command = program(self.folder, VERSION + """printf '{"keys": [], "points": [{"folders": ["%s"], "averages": null, "failure": null}]}' "$#" """)
+        over = {"particles.radius": np.array([0.25, 0.5]), "search.by": ["lattice", "auto"], "domain.sides": [[1, 2.5]]}
+        table = self.scene.scan(over, 3, "q=1%", resume=True, command=command)
+        self.assertEqual((table.columns, table["runs"].tolist(), table["failure"].tolist()), (["runs", "failure"], [1], [""]))
+        arguments = self.folder / "arguments"
+        command = program(self.folder, VERSION + f"""printf '%s\\n' "$@" > {arguments}; echo '{{"keys": [], "points": []}}' """)
+        self.scene.scan(over, 3, "q=1%", out="a.scan", resume=True, command=command)
+        expected = ["scan", "scene.toml", "--seeds=3", "--until=q=1%", f"--out={Path('a.scan').absolute()}"]
+        expected += ["--over=particles.radius=0.25,0.5", '--over=search.by="lattice","auto"', "--over=domain.sides=[1, 2.5]"]
+        self.assertEqual(arguments.read_text().splitlines(), [*expected, "--resume", "--json"])
+        with self.assertRaisesRegex(ValueError, "particles.radius has no values"):
+            self.scene.scan({"particles.radius": []}, command=command)
+
+    @SHELL
     def test_failing_commands_raise_their_message(self):
         for lines in ("echo broken >&2; exit 3", "echo '{\"error\": 0.5}'; echo broken >&2; exit 3", "echo '['; echo broken >&2; exit 3"):
             self.refused("failed with exit code 3: broken", command=program(self.folder, VERSION + lines))
@@ -91,7 +106,7 @@ class Commands(InFolder):
         self.refused("cannot be run", command=self.folder / "command")
 
     def test_signatures_match_the_studies(self):
-        for name in ("explain", "accuracy"):
+        for name in ("explain", "accuracy", "scan"):
             ours = list(inspect.signature(getattr(_studies, name)).parameters.values())[1:]
             shown = list(inspect.signature(getattr(stripmine.Scene, name)).parameters.values())[1:]
             self.assertEqual(ours, shown)
@@ -114,6 +129,28 @@ class Studies(InFolder):
         np.testing.assert_allclose(mean, [HENDERSON], rtol=0.02 + CLOSE)
         # The second plan uses the trials of the first.
         self.assertIn("cached on", scene.explain("compressibility", 0.1, seconds=4)["origin"])
+
+    def test_scans_agree_with_the_virial_series(self):
+        # Hard discs: B3/B2² = 4/3 − √3/π, B4/B2³ = 0.53223180 (Clisby and McCoy, J. Stat. Phys. 122, 15, 2006); later terms are below 4·10⁻⁵ here.
+        fractions = np.array([0.02, 0.05])
+        known = 1 + 2 * fractions + (4 / 3 - 3**0.5 / np.pi) * (2 * fractions) ** 2 + 0.5322318 * (2 * fractions) ** 3
+        out = self.folder / "out"
+        scan = {"particles.packing_fraction": fractions}
+        table = stripmine.scene("hard-disks", {"particles.count": 400}).scan(scan, until="compressibility=0.5%", out=out)
+        np.testing.assert_array_equal(table["particles.packing_fraction"], fractions)
+        bars = table["compressibility_error_95"]
+        self.assertTrue((bars <= 0.005 * known * 1.01).all() and (bars > 0).all())
+        # Of 400 discs, each has 399 partners.
+        self.assertTrue((np.abs(table["compressibility"] - known) < 1.5 * bars + (known - 1) / 400).all())
+        self.assertTrue((out / "compressibility.svg").is_file())
+        self.assertEqual((table.units["kinetic"], table["runs"].tolist(), set(table["failure"])), ("energy", [1, 1], {""}))
+        again = stripmine.scene("hard-disks", {"particles.count": 400}).scan(scan, until="compressibility=0.5%", out=out, resume=True)
+        np.testing.assert_array_equal(again["compressibility"], table["compressibility"])
+        # A point that fails is a row with its reason; one that is refused raises.
+        short = stripmine.scene("hard-disks", {"particles.count": 100, "run.events": 2000}).scan(scan, until="compressibility=0.01%")
+        self.assertTrue(all("latest end" in reason for reason in short["failure"]))
+        with self.assertRaisesRegex(stripmine.Error, "packing_fraction` cannot be the number 0.99"):
+            stripmine.scene("hard-disks").scan({"particles.packing_fraction": [0.1, 0.99]})
 
     def test_errors_fall_with_the_square_root(self):
         out = self.folder / "out"

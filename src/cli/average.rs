@@ -1,30 +1,37 @@
 //! `stripmine average`: mean and error of every quantity, over one run or several.
 
 use super::display::{UnitSystem, decimals, scene_of};
+use super::run::seeds::SEEDS;
 use super::run_folder;
+use super::scan::{KeyTable, SCAN, TableKey, TablePoint, check_names, main_quantities, unit_of};
 use crate::console::{CommandFailure, Common, print, print_json, warn};
 use crate::frame::{ResultFrame, csv};
 use crate::report::{FormattedTable, FrameBuilder, TableCell, terminal};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
-use stripmine_physics::method::Methods;
+use stripmine_physics::io::owned_folder::{FolderKind, names_in};
+use stripmine_physics::method::{Methods, method};
 use stripmine_physics::number::{count_with_noun, significant, with_error_bar};
 use stripmine_physics::run::{
-    FinishedRun, FunctionPoint, Number, StructureFunction, averages_of, function_of, functions_of,
+    FinishedError, FinishedRun, FunctionPoint, Number, ScenePoint, ScenePoints, StructureFunction,
+    averages_of, function_of, functions_of, points_of,
 };
 use stripmine_physics::structure::{NAMES, observable};
 
 /// Prints the mean of every quantity of a run with its error
 ///
-/// Several runs of one scene with different seeds are joined.
+/// Several runs of one scene with different seeds are joined. Runs of different scenes make a table over the keys in which the scenes differ.
 #[derive(Args)]
 pub(super) struct AverageVerb {
-    /// Folders of runs
+    /// Folders of runs, or of several runs made by `run --seeds` or `scan`
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<PathBuf>,
+    /// Quantities to print of runs of different scenes, separated by commas; default: the main ones that fit into 80 columns
+    #[arg(long, value_delimiter = ',', value_name = "QUANTITIES", conflicts_with = "structure")]
+    of: Vec<String>,
     /// Prints the table as CSV
     #[arg(long, conflicts_with = "json")]
     csv: bool,
@@ -44,10 +51,15 @@ struct AveragesDocument<'a> {
 
 impl AverageVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
-        let runs = self.runs.iter().map(|run| FinishedRun::read(&run_folder(run), methods));
-        let averages = averages_of(&runs.collect::<Result<Vec<_>, _>>()?)?;
-        let folders: Vec<PathBuf> = self.runs.iter().map(|run| run_folder(run)).collect();
+        let folders = folders_of_runs(&self.runs)?;
+        let runs =
+            folders.iter().map(|run| FinishedRun::read(run, methods)).collect::<Result<Vec<_>, _>>()?;
         let units = UnitSystem::of(folders.first().and_then(|run| scene_of(run)).as_ref());
+        let scenes = if self.structure.is_none() { Some(points_of(&runs)?) } else { None };
+        if let Some(scenes) = scenes.filter(|scenes| !scenes.keys.is_empty()) {
+            return self.print_points(scenes, &folders, &units, common, methods);
+        }
+        let averages = averages_of(&runs)?;
         let folders = || folders.iter().map(PathBuf::as_path);
         if let Some(observable) = self.structure.as_deref().and_then(observable) {
             let function = function_of(folders(), observable)?;
@@ -78,6 +90,64 @@ impl AverageVerb {
         }
         print(&format!("\n{}", terminal::render(&structure_table(&functions, &units))))
     }
+}
+
+impl AverageVerb {
+    /// Prints the means of runs of different scenes over the keys in which these differ.
+    fn print_points(
+        &self,
+        scenes: ScenePoints,
+        folders: &[PathBuf],
+        units: &UnitSystem,
+        common: &Common,
+        methods: Methods,
+    ) -> Result<(), CommandFailure> {
+        let scene = scene_of(&folders[0]);
+        let kind = scene.as_ref().and_then(|scene| scene.get("method")?.get("kind")?.as_str());
+        let entry = kind.and_then(|kind| method(methods, kind));
+        let entry = entry.ok_or_else(|| FinishedError::NoMethod(folders[0].clone()))?;
+        check_names(&self.of, entry.quantities).map_err(CommandFailure::Options)?;
+        let names =
+            |runs: Vec<usize>| runs.into_iter().map(|run| folders[run].display().to_string()).collect();
+        let point = |ScenePoint { values, runs, averages }| TablePoint {
+            values,
+            folders: names(runs),
+            averages: Some(averages),
+            failure: None,
+        };
+        let keys = scenes.keys.into_iter().map(|key| TableKey { unit: unit_of(&key, entry), key });
+        let table = KeyTable { keys: keys.collect(), points: scenes.points.into_iter().map(point).collect() };
+        if common.json {
+            return print_json(&table);
+        }
+        if self.csv {
+            return print(&table.csv()?);
+        }
+        print(&table.text(&self.of, &main_quantities(entry), units, table.extent()))
+    }
+}
+
+/// Folders of the runs that some paths name. A folder of several runs stands for all of them; files of this program beside runs are left out.
+fn folders_of_runs(paths: &[PathBuf]) -> Result<Vec<PathBuf>, CommandFailure> {
+    let has = |folder: &Path, kinds: &[FolderKind]| kinds.iter().any(|kind| folder.join(kind.list).is_file());
+    let has_list = |folder: &Path| has(folder, &[SEEDS, SCAN]);
+    // A point of a scan is a run, or holds one for each seed.
+    let is_point = |folder: &Path| {
+        folder.is_dir()
+            && !folder.join("thermo.csv").is_file()
+            && folder.parent().is_some_and(|above| has(above, &[SCAN]))
+    };
+    let mut folders = vec![];
+    for path in paths.iter().map(|path| run_folder(path)) {
+        if has_list(&path) || is_point(&path) {
+            let below = names_in(&path)?.unwrap_or_default().into_iter().map(|name| path.join(name));
+            folders.extend(folders_of_runs(&below.filter(|it| it.is_dir()).collect::<Vec<_>>())?);
+        } else if !(path.is_file() && path.parent().is_some_and(has_list)) {
+            folders.push(path);
+        }
+    }
+    // Without a run, the first path is reported.
+    Ok(if folders.is_empty() { paths.to_vec() } else { folders })
 }
 
 /// Warns of every function whose result is doubtful.

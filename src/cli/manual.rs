@@ -28,10 +28,24 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
+        "scan",
+        &[
+            (
+                "stripmine scan hard-disks --over particles.packing_fraction=0.05:0.65:20 --until compressibility=1%",
+                "finds Z at 20 packing fractions to 1 %",
+            ),
+            (
+                "stripmine scan langevin-dense --over law.bath_temperature=1,2,4 --over law.drag=0.5,1 --seeds 4",
+                "runs a grid of six points with four seeds each",
+            ),
+        ],
+    ),
+    (
         "average",
         &[
             ("stripmine average pipe-small.run", "prints means with errors"),
             ("stripmine average a.run b.run --json", "joins two runs of one scene with different seeds"),
+            ("stripmine average hard-disks.scan", "prints the table of a scan again"),
         ],
     ),
     (

@@ -15,6 +15,7 @@ mod price;
 mod processes;
 mod reproduce;
 mod run;
+mod scan;
 mod scene;
 mod suggestion;
 
@@ -52,6 +53,7 @@ enum GeneralVerb {
     Reproduce(reproduce::Reproduce),
     Scene(scene::SceneVerb),
     Run(run::RunVerb),
+    Scan(scan::ScanVerb),
     Average(average::AverageVerb),
     Plot(plot::PlotVerb),
     Bench(Box<bench::BenchVerb>),
@@ -252,6 +254,7 @@ fn execute_verb(
         GeneralVerb::Reproduce(verb) => verb.run(&common, methods),
         GeneralVerb::Scene(verb) => verb.run(&common, methods),
         GeneralVerb::Run(verb) => verb.run(&common, methods),
+        GeneralVerb::Scan(verb) => verb.run(&common, methods),
         GeneralVerb::Average(verb) => verb.run(&common, methods),
         GeneralVerb::Plot(verb) => verb.run(&common, methods),
         GeneralVerb::Bench(verb) => {

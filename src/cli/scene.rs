@@ -260,8 +260,8 @@ fn matching_keys(word: &str, common: &Common, methods: Methods) -> Result<(), Co
             }
             let is_same = |known: &&mut MatchingKey| known.line == line;
             match found.iter_mut().find(is_same) {
-                Some(known) => known.methods.push(entry.name),
-                None => found.push(MatchingKey { methods: vec![entry.name], line }),
+                Some(known) => known.methods.push(entry.vocabulary.keys.method),
+                None => found.push(MatchingKey { methods: vec![entry.vocabulary.keys.method], line }),
             }
         }
     }

@@ -126,12 +126,12 @@ struct FailureDocument<'f> {
 }
 
 /// One failure as data.
-#[derive(Debug, PartialEq, Eq, Serialize)]
-struct FailureReport {
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct FailureReport {
     /// Name of the class, or `interrupted`.
     kind: &'static str,
     /// Description of the failure, with the numbers.
-    message: String,
+    pub(crate) message: String,
     /// Location, if known.
     place: Option<FilePlace>,
     /// Advice, if the message does not include it.
@@ -222,7 +222,8 @@ impl CommandFailure {
         text.strip_prefix("error: ").unwrap_or(&text).to_owned()
     }
 
-    fn report(&self) -> FailureReport {
+    /// The failure as data.
+    pub(crate) fn report(&self) -> FailureReport {
         let kind = self.class().map_or("interrupted", ErrorClass::name);
         if let Some(first) = self.mistakes().and_then(|mistakes| mistakes.0.first()) {
             let [line, column] = [

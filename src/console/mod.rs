@@ -5,7 +5,7 @@ mod output;
 mod verb;
 
 pub use failure::CommandFailure;
-pub(crate) use failure::report_failure;
+pub(crate) use failure::{FailureReport, report_failure};
 pub use output::is_untouched;
 pub(crate) use output::print_answer;
 pub(crate) use output::{

@@ -6,6 +6,8 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle
 
 /// Default width in characters.
 const PAGE: usize = 100;
+/// Width in characters that fits into any terminal.
+pub(crate) const NARROW: usize = 80;
 /// Padding of a table column: a blank on either side.
 const BESIDE: usize = 2;
 /// Minimum width in characters.
@@ -14,6 +16,11 @@ const NARROWEST: usize = 20;
 /// Renders a table, no wider than the environment variable `COLUMNS` or the terminal.
 pub(crate) fn render(table: &FormattedTable) -> String {
     render_within(table, width())
+}
+
+/// Renders a table as [`render`] does, within 80 characters if neither limits it.
+pub(crate) fn render_narrow(table: &FormattedTable) -> String {
+    render_within(table, width().or(Some(NARROW)))
 }
 
 /// Width in characters, from `COLUMNS` or the terminal; `None` without either.

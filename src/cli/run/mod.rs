@@ -1,6 +1,7 @@
 //! `stripmine run`: runs one simulation into a folder, or several with different seeds.
 
-mod seeds;
+pub(super) mod seeds;
+pub(super) mod side_by_side;
 
 use super::display::UnitSystem;
 use super::processes;
@@ -29,7 +30,7 @@ use stripmine_physics::signals;
 /// Limit of `--ranks`, above the cores of any machine at hand.
 pub(super) const MOST_RANKS: u16 = MOST_THREADS;
 /// Limit of `--seeds`.
-const MOST_SEEDS: u64 = 100_000;
+pub(super) const MOST_SEEDS: u64 = 100_000;
 
 /// Runs a scene and writes its results to a folder
 ///

@@ -1,40 +1,31 @@
 //! `run --seeds`: runs one scene with several seeds side by side, and averages over the runs.
 
 use super::RunVerb;
+use super::side_by_side::{PlannedRun, SideBySide};
 use crate::cli::display::UnitSystem;
 use crate::cli::processes;
-use crate::console::{
-    CommandFailure, Common, SHARES, bar, clear_progress, print, print_json, print_message, to_json, warn,
-};
+use crate::console::{CommandFailure, Common, clear_progress, print, print_json, to_json};
 use crate::provenance::built;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
-use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::PoisonError;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::thread;
 use std::time::Instant;
 use stripmine_physics::averages::{RunAverages, joined};
 use stripmine_physics::io::owned_folder::{FolderContent, FolderKind, LOCK, OwnedFolder};
-use stripmine_physics::method::{MethodEntry, Methods, Prepared, prepare, vocabularies};
+use stripmine_physics::method::{Methods, prepare, vocabularies};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted;
 use stripmine_physics::ranks::RankBackend;
 use stripmine_physics::run::{
-    Ending, FinishedRun, RunJob, StructureFunction, Summary, averages_of, functions_of, run,
-    starts_from_beginning,
+    FinishedRun, StructureFunction, averages_of, functions_of, starts_from_beginning,
 };
 use stripmine_physics::scene::{Fallback, Key, KeyValue, MistakeKind, SceneValues, Vocabulary};
-use stripmine_physics::signals;
 use stripmine_physics::structure::{OBSERVABLES, observable};
 
 /// File name of the joint summary.
 const SUMMARY: &str = "seeds.json";
 /// Kind of the folder that holds the runs and their joint summary.
-const SEEDS: FolderKind = FolderKind {
+pub(in crate::cli) const SEEDS: FolderKind = FolderKind {
     lock: LOCK,
     list: "seeds.files",
     holds: FolderContent::Files {
@@ -43,9 +34,6 @@ const SEEDS: FolderKind = FolderKind {
         is_shared: true,
     },
 };
-/// Ticks of the progress bar per run.
-const PARTS: u64 = 1000;
-
 /// Joint result of runs with different seeds.
 #[derive(Serialize)]
 struct SeedEnsemble {
@@ -59,12 +47,6 @@ struct SeedEnsemble {
     structure: Vec<StructureFunction>,
 }
 
-/// Folder of a run, and its seeds as overrides.
-type SeededRun = (PathBuf, Vec<String>);
-/// Prepares the scene with seeds.
-type WithSeeds<'s> =
-    &'s (dyn Fn(&[String]) -> Result<(Prepared, &'static MethodEntry), CommandFailure> + Sync);
-
 /// One of several runs with different seeds.
 #[derive(Serialize)]
 struct SeedRun {
@@ -73,9 +55,24 @@ struct SeedRun {
     averages: RunAverages,
 }
 
+/// Runs of a scene with seeds in consecutive folders below `folder`, beginning with the scene's own seeds.
+pub(in crate::cli) fn seeded_runs(keys: &[SeedKey], count: u64, folder: &Path) -> Vec<PlannedRun> {
+    let member = |number: u64| PlannedRun {
+        folder: folder.join(format!("seed-{}", keys[0].1.wrapping_add(number))),
+        overrides: keys
+            .iter()
+            .map(|(key, first)| format!("{}={}", key.path(), first.wrapping_add(number)))
+            .collect(),
+    };
+    (0..count).map(member).collect()
+}
+
+/// Key of a seed with its first value.
+pub(in crate::cli) type SeedKey = (&'static Key, u64);
+
 /// Seed keys of a scene, each with its first value: seeds of the start, and of the noise if it is given or is the only
 /// random input.
-fn seed_keys(values: &SceneValues, vocabulary: &Vocabulary) -> Vec<(&'static Key, u64)> {
+pub(in crate::cli) fn seed_keys(values: &SceneValues, vocabulary: &Vocabulary) -> Vec<SeedKey> {
     let is_seed = |key: &&'static Key| key.name == "seed" || key.name.ends_with("_seed");
     let seed = |key: &&'static Key| match values.value(key) {
         Some(KeyValue::Whole(seed)) => Some((*key, seed)),
@@ -87,7 +84,7 @@ fn seed_keys(values: &SceneValues, vocabulary: &Vocabulary) -> Vec<(&'static Key
         .filter(is_seed)
         .filter(|key| values.is_used(key) && !values.is_idle(key))
         .collect();
-    let found: Vec<(&'static Key, u64)> = used.iter().filter_map(seed).collect();
+    let found: Vec<SeedKey> = used.iter().filter_map(seed).collect();
     if !found.is_empty() {
         return found;
     }
@@ -116,18 +113,12 @@ impl RunVerb {
             let message = "this scene has no random numbers: every seed gives the same run";
             return Err(CommandFailure::Options(error.error(MistakeKind::Unused, message).into()));
         }
-        let members: Vec<SeededRun> = (0..count)
-            .map(|number| {
-                let seeds =
-                    keys.iter().map(|(key, first)| format!("{}={}", key.path(), first.wrapping_add(number)));
-                (folder.join(format!("seed-{}", keys[0].1.wrapping_add(number))), seeds.collect())
-            })
-            .collect();
+        let members = seeded_runs(&keys, count, &folder);
         let with_seeds = |seeds: &[String]| -> Result<_, CommandFailure> {
             Ok(prepare(self.values(&text, seeds, methods)?.with_start_of(&values), methods)?)
         };
         // Mistakes of the scene are reported once, before anything is written.
-        let (prepared, _) = with_seeds(&members[0].1)?;
+        let (prepared, _) = with_seeds(&members[0].overrides)?;
         prepared.memory.fits(&self.scene)?;
         let begun = Instant::now();
         let asked = &prepared.output.structure;
@@ -144,9 +135,21 @@ impl RunVerb {
         if processes::rank(common.crew) == 0 {
             members
                 .iter()
-                .try_for_each(|(folder, _)| starts_from_beginning(folder, self.existing()).map(drop))?;
+                .try_for_each(|run| starts_from_beginning(&run.folder, self.existing()).map(drop))?;
         }
-        let side_by_side = |some: &[SeededRun]| self.side_by_side(some, &prepared, common, &with_seeds);
+        let runs = SideBySide {
+            existing: self.existing(),
+            memory: &prepared.memory,
+            common,
+            prepare: &with_seeds,
+            folder: &folder,
+        };
+        let side_by_side = |some: &[PlannedRun]| {
+            runs.carry_out(some)?
+                .into_iter()
+                .map(|it| it.map_err(|failed| failed.failure))
+                .collect::<Result<Vec<_>, _>>()
+        };
         let (own, averages) = if let RankBackend::Processes(join) = common.crew {
             let same = format!("{count} seeds\n{:?}\n{}", built(), prepared.scene);
             let mut own = None;
@@ -159,7 +162,7 @@ impl RunVerb {
             })?;
             // Only the first rank has claimed the folder; it writes the summary.
             let Some(own) = own else { return Ok(()) };
-            let read = |(folder, _): &SeededRun| averages_of(&[FinishedRun::read(folder, methods)?]);
+            let read = |run: &PlannedRun| averages_of(&[FinishedRun::read(&run.folder, methods)?]);
             (own, members.iter().map(read).collect::<Result<_, _>>()?)
         } else {
             let own = claimed()?;
@@ -168,8 +171,9 @@ impl RunVerb {
             (own, found?.into_iter().map(|summary| summary.averages).collect::<Vec<RunAverages>>())
         };
         let members = members.into_iter().zip(averages);
-        let runs: Vec<SeedRun> =
-            members.map(|((folder, seeds), averages)| SeedRun { folder, seeds, averages }).collect();
+        let runs: Vec<SeedRun> = members
+            .map(|(run, averages)| SeedRun { folder: run.folder, seeds: run.overrides, averages })
+            .collect();
         let all: Vec<RunAverages> = runs.iter().map(|run| run.averages.clone()).collect();
         let structure = functions_of(runs.iter().map(|run| run.folder.as_path()))?;
         let structure: Vec<StructureFunction> =
@@ -199,78 +203,5 @@ impl RunVerb {
     fn values(&self, text: &str, seeds: &[String], methods: Methods) -> Result<SceneValues, CommandFailure> {
         let overrides = [self.overrides.as_slice(), seeds].concat();
         Ok(SceneValues::parse(&self.scene, text, &overrides, &vocabularies(methods))?)
-    }
-
-    /// Makes all runs, as many at a time as threads and memory allow; returns the first failure once all have ended.
-    fn side_by_side(
-        &self,
-        members: &[SeededRun],
-        prepared: &Prepared,
-        common: &Common,
-        with_seeds: WithSeeds<'_>,
-    ) -> Result<Vec<Summary>, CommandFailure> {
-        let threads = rayon::current_num_threads();
-        let memory = &prepared.memory;
-        let fit = memory.available.map_or(threads, |left| (left.bytes / memory.needed.max(1)) as usize);
-        let workers = threads.min(members.len()).min(fit).max(1);
-        let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
-        let bar = bar(common, PARTS * members.len() as u64, SHARES);
-        bar.set_message(format!("{} runs", members.len()));
-        let outcomes: Mutex<Vec<Option<Result<Summary, CommandFailure>>>> =
-            Mutex::new(members.iter().map(|_| None).collect());
-        let notices: Mutex<BTreeSet<String>> = Mutex::default();
-        let work = &|pool: &ThreadPool| {
-            while let Some((number, (folder, seeds))) =
-                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|at| Some((at, members.get(at)?)))
-            {
-                let mut before = 0;
-                let progress = |part: u64, all: u64| {
-                    let part = (PARTS as f64 * part as f64 / all.max(1) as f64) as u64;
-                    bar.set_position(done.fetch_add(part - before, Ordering::Relaxed) + part - before);
-                    before = part;
-                };
-                let notice = |note: &str| {
-                    let mut all = notices.lock().unwrap_or_else(PoisonError::into_inner);
-                    if all.insert(note.to_owned()) && !common.quiet {
-                        print_message(format_args!("{}: {note}", quoted::path(folder)));
-                    }
-                };
-                let outcome = pool.install(|| self.run_one_seed(folder, with_seeds(seeds), progress, notice));
-                outcomes.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(outcome);
-            }
-        };
-        let pools: Result<Vec<ThreadPool>, _> =
-            (0..workers).map(|_| ThreadPoolBuilder::new().num_threads(threads / workers).build()).collect();
-        let pools = pools.map_err(CommandFailure::Threads)?;
-        thread::scope(|scope| {
-            let spawn = |pool| thread::Builder::new().spawn_scoped(scope, move || work(pool)).map(drop);
-            pools.iter().try_for_each(spawn)
-        })
-        .map_err(CommandFailure::writing("the threads of the runs"))?;
-        let outcomes = outcomes.into_inner().unwrap_or_else(PoisonError::into_inner);
-        outcomes.into_iter().flatten().collect()
-    }
-
-    fn run_one_seed(
-        &self,
-        folder: &Path,
-        scene: Result<(Prepared, &'static MethodEntry), CommandFailure>,
-        progress: impl FnMut(u64, u64) + Send,
-        notice: impl FnMut(&str) + Send,
-    ) -> Result<Summary, CommandFailure> {
-        let (prepared, entry) = scene?;
-        let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &built() };
-        match run(job, folder, self.existing(), signals::interruption_flag(), progress, notice)? {
-            Ending::Done(summary) => {
-                for warning in &summary.warnings {
-                    warn(format_args!("{}: {warning}", quoted::path(folder)));
-                }
-                Ok(*summary)
-            }
-            Ending::Interrupted { clock } => {
-                let folder = folder.parent().unwrap_or(folder).to_owned();
-                Err(CommandFailure::Interrupted { moment: clock.to_string(), folder })
-            }
-        }
     }
 }

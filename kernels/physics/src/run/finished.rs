@@ -1,6 +1,6 @@
 //! Finished runs: their rows, their scenes, and averages over several of them.
 
-use super::folder::{SCENE, THERMO};
+use super::folder::{LONGEST_SCENE, SCENE, THERMO};
 use super::identity::{first_difference, physics};
 use super::table::{TableError, TableReader};
 use crate::averages::{AveragedRows, RunAverages, joined};
@@ -9,9 +9,6 @@ use crate::method::{Methods, ObservedQuantity, observer};
 use crate::quoted;
 use crate::reported::{ErrorClass, FilePlace, Reported};
 use std::path::{Path, PathBuf};
-
-/// Longest scene (bytes).
-pub(super) const LONGEST_SCENE: u64 = 64 << 20;
 
 /// Reason why runs have no averages.
 #[derive(Debug, thiserror::Error)]
@@ -167,12 +164,12 @@ impl FinishedRun {
     }
 
     /// Lines of the scene that determine the physics.
-    fn physics(&self) -> Vec<&str> {
+    pub(super) fn physics(&self) -> Vec<&str> {
         physics(&self.scene)
     }
 
     /// Checks that another run has the same scene with another seed.
-    fn check_joinable(&self, other: &FinishedRun) -> Result<(), FinishedError> {
+    pub(super) fn check_joinable(&self, other: &FinishedRun) -> Result<(), FinishedError> {
         let (first, other_folder) = (self.folder.clone(), other.folder.clone());
         if self.physics() == other.physics() {
             return Err(FinishedError::Twice { first, other: other_folder });

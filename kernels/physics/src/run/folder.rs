@@ -14,6 +14,8 @@ pub(super) const THERMO: &str = "thermo.csv";
 pub(super) const EVENTS: &str = "events.csv";
 /// Scene with every value.
 pub(super) const SCENE: &str = "scene.toml";
+/// Longest scene (bytes).
+pub(super) const LONGEST_SCENE: u64 = 64 << 20;
 /// Summary of the run.
 pub(super) const SUMMARY: &str = "summary.json";
 /// Checkpoint before the newest.

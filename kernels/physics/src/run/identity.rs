@@ -1,8 +1,9 @@
 //! Identity of a run: its scene, its discs, and the program as far as it determines the bits.
 
-use super::folder::SCENE;
+use super::folder::{LONGEST_SCENE, SCENE};
 use super::{RunError, RunJob};
 use crate::io::checkpoint::{Checkpoint, CheckpointCounter};
+use crate::io::regular_file;
 use crate::method::Clock;
 use crate::origin::Origin;
 use crate::particles::{Particle, ParticleKind, Particles};
@@ -153,6 +154,17 @@ pub fn choices_of_the_run(
     let open = vocabulary.keys.keys().filter(|key| values.choice(key).as_deref() == Some("auto"));
     let otherwise = open.filter(|key| theirs.choice(key) != ours.choice(key));
     otherwise.filter_map(|key| theirs.choice(key).map(|word| format!("{}={word}", key.path()))).collect()
+}
+
+/// Checks, before anything is computed, that the run in a folder, if there is one, has a resolved scene. The discs of a start file are not compared.
+///
+/// # Errors
+/// [`RunError::OtherScene`] with the first difference.
+pub fn check_scene_of_folder(scene: &str, folder: &Path) -> Result<(), RunError> {
+    // A scene that cannot be read is refused when the run is resumed.
+    let Ok(theirs) = regular_file::read(&folder.join(SCENE), LONGEST_SCENE) else { return Ok(()) };
+    let [theirs, ours] = [&String::from_utf8_lossy(&theirs), scene].map(without_start_file);
+    same_scene(folder, &theirs, &ours)
 }
 
 /// Comment in a run's scene with the digest of its start file's discs.

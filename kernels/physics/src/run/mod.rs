@@ -12,6 +12,7 @@ mod goal;
 mod growing;
 mod identity;
 mod moments;
+mod points;
 mod recorder;
 mod structured;
 mod summary;
@@ -21,7 +22,8 @@ mod tests;
 
 pub use finished::{FinishedError, FinishedRun, averages_of};
 pub use functions::{FunctionPoint, Number, StructureFunction, function_of, functions_of};
-pub use identity::choices_of_the_run;
+pub use identity::{check_scene_of_folder, choices_of_the_run};
+pub use points::{ScenePoint, ScenePoints, points_of};
 pub use structured::StructureSummary;
 pub use summary::Summary;
 pub use table::{TableError, TableReader};

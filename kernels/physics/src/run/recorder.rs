@@ -1,7 +1,9 @@
 //! Folder of a run and the schedule of its files.
 
-use super::finished::{LONGEST_SCENE, rows_of};
-use super::folder::{ALWAYS, CHECKPOINTS, RUN, RunFolder, SCENE, SUMMARY, THERMO, files_to_resume};
+use super::finished::rows_of;
+use super::folder::{
+    ALWAYS, CHECKPOINTS, LONGEST_SCENE, RUN, RunFolder, SCENE, SUMMARY, THERMO, files_to_resume,
+};
 use super::goal::{RunGoal, TargetProgress};
 use super::growing::{GrowingFiles, run_file_names};
 use super::identity::{BITS, RunIdentity, same_scene};
