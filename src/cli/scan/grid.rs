@@ -270,7 +270,7 @@ mod tests {
             grid(&keys(options).unwrap()).into_iter().map(|point| point.name).collect()
         };
         assert_eq!(
-            names(&["particles.packing_fraction=0.30,.5e0", "law.restitution=1,0.9"]),
+            names(&["particles.packing_fraction=0.30,5e-1", "law.restitution=1,0.9"]),
             [
                 "packing_fraction=0.3,restitution=1",
                 "packing_fraction=0.3,restitution=0.9",
