@@ -589,8 +589,8 @@ fn count_and_packing_fraction_give_the_box() {
         let overrides = [periodic.to_owned()];
         let values = SceneValues::parse("scene", &text, &overrides, &vocabularies(METHODS)).unwrap();
         let (prepared, _) = prepare(values, METHODS).unwrap_or_else(|error| panic!("{generate}: {error}"));
-        for axis in 0..2 {
-            assert!((prepared.domain.length(axis) / sides[axis] - 1.0).abs() < 1e-14, "{generate}");
+        for (axis, side) in sides.iter().enumerate() {
+            assert!((prepared.domain.length(axis) / side - 1.0).abs() < 1e-14, "{generate}");
         }
         assert_eq!(prepared.particles().grain_count(), 80, "{generate}");
         // The written scene has no sides either, and gives the same discs.

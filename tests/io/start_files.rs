@@ -90,8 +90,8 @@ fn keys_of(method: usize, missing: &[usize], file: &str) -> Vec<&'static str> {
 #[test]
 fn files_of_other_programs_start_every_method() {
     for (file, missing, precision) in CASES {
-        for method in 0..SCENES.len() {
-            let name = format!("{file} by {}", SCENES[method].0);
+        for (method, scene) in SCENES.iter().enumerate() {
+            let name = format!("{file} by {}", scene.0);
             let path = folder().join(file);
             let prepared = start(method, &path, &keys_of(method, missing, file))
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -106,7 +106,7 @@ fn files_of_other_programs_start_every_method() {
                 let velocity = if missing.contains(&MOTION) { [0.0; 2] } else { velocity };
                 assert_eq!(disc.planar_velocity(), velocity, "{name}");
                 assert!((disc.mass - 1.0).abs() < 1e-10, "{name}: {disc:?}");
-                assert!(SCENES[method].0 == "nbody" || disc.radius == 0.5, "{name}: {disc:?}");
+                assert!(scene.0 == "nbody" || disc.radius == 0.5, "{name}: {disc:?}");
             }
             assert_eq!((all[0].id, all[15].id), (1, 16), "{name}");
             assert!(all.iter().all(|disc| disc.kind == ParticleKind::Grain));
@@ -117,9 +117,9 @@ fn files_of_other_programs_start_every_method() {
 /// The file of the package gsd 5.0.1 has positions from the centre of its box of 20 × 20, velocities, and neither diameters nor masses.
 #[test]
 fn gsd_of_the_package_starts_every_method() {
-    for method in 0..SCENES.len() {
+    for (method, scene) in SCENES.iter().enumerate() {
         let file = folder().join("start.gsd");
-        let is_space = SCENES[method].0 == "nbody";
+        let is_space = scene.0 == "nbody";
         for (keys, radius, mass) in [
             (&[][..], 0.5, 1.0),
             (
