@@ -89,6 +89,15 @@ fn subcommand(verb: &Verb) -> clap::Command {
     (verb.command)(clap::Command::new(verb.name))
 }
 
+/// Help of the argument of `scene keys`.
+fn key_help(methods: Methods) -> String {
+    let names: Vec<&str> = methods.iter().map(|method| method.vocabulary.keys.method).collect();
+    format!(
+        "Method ({}), or a word in the names or meanings of keys of all methods; default: the first method",
+        names.join(", ")
+    )
+}
+
 /// The clap command with the verbs, benches, presets and items of the methods.
 fn command(methods: Methods) -> clap::Command {
     let benches = methods.iter().flat_map(|method| method.benches);
@@ -97,10 +106,6 @@ fn command(methods: Methods) -> clap::Command {
     let items: Vec<PossibleValue> =
         items_of(methods).map(|item| PossibleValue::new(item.name).help(item.title())).collect();
     let presets: Vec<&str> = scene::presets(methods).map(|preset| preset.name).collect();
-    let names: Vec<PossibleValue> = methods
-        .iter()
-        .map(|method| PossibleValue::new(method.vocabulary.keys.method).help(method.doc))
-        .collect();
     let general = CommandLine::command()
         .mut_subcommand("reproduce", |reproduce| {
             reproduce.mut_arg("only", |only| only.value_parser(PossibleValuesParser::new(items)))
@@ -115,9 +120,7 @@ fn command(methods: Methods) -> clap::Command {
                 .mut_subcommand("show", |show| {
                     show.mut_arg("name", |name| name.value_parser(PossibleValuesParser::new(presets)))
                 })
-                .mut_subcommand("keys", |keys| {
-                    keys.mut_arg("method", |method| method.value_parser(PossibleValuesParser::new(names)))
-                })
+                .mut_subcommand("keys", |keys| keys.mut_arg("what", |what| what.help(key_help(methods))))
         });
     general
         .mut_subcommand("chart", |chart| chart.subcommands(charts_of(methods).map(subcommand)))

@@ -64,7 +64,7 @@ enum SceneAction {
     },
     /// Lists keys of a scene file: type, unit, default, meaning
     Keys {
-        /// Method whose keys are listed, or a word in the names or meanings of keys of all methods; default: all keys of the first method
+        /// Method whose keys are listed, or a word in keys of all methods
         what: Option<String>,
     },
 }
