@@ -225,6 +225,11 @@ impl MachineModel {
         MachineModel { whole_registers: whole, ..self.clone() }
     }
 
+    /// Elements of a group of registers, if instructions take the time of whole registers.
+    pub(crate) fn group_elements(&self) -> Option<f64> {
+        self.whole_registers.as_ref().map(WholeRegisters::elements)
+    }
+
     /// True if the machine states which operations can execute at once.
     pub(crate) fn has_units(&self) -> bool {
         !self.units.is_empty()

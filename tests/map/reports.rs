@@ -94,3 +94,24 @@ fn legends_are_short() {
         }
     }
 }
+
+/// A column described as words holds at least one: a reader of tables takes a column of numbers for numbers (tests/clients/report_tables.py).
+#[test]
+fn columns_of_words_are_not_numbers() {
+    let items = [reports(), reports().join("host")].into_iter().flat_map(|it| fs::read_dir(it).unwrap());
+    let packages = items.map(|item| item.unwrap().path()).filter(|it| it.join("datapackage.json").exists());
+    for folder in packages {
+        let package: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.join("datapackage.json")).unwrap()).unwrap();
+        for resource in package["resources"].as_array().unwrap() {
+            let file = folder.join(resource["path"].as_str().unwrap());
+            let rows: Vec<csv::StringRecord> =
+                csv::Reader::from_path(&file).unwrap().records().map(Result::unwrap).collect();
+            for (column, field) in resource["schema"]["fields"].as_array().unwrap().iter().enumerate() {
+                let mut cells = rows.iter().map(|row| &row[column]).filter(|it| !it.is_empty()).peekable();
+                let numbers = cells.peek().is_some() && cells.all(|it| it.parse::<f64>().is_ok());
+                assert!(!numbers || field["type"] != "string", "{}: {}", file.display(), field["name"]);
+            }
+        }
+    }
+}

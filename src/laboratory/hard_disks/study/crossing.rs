@@ -168,7 +168,7 @@ fn frames(few: &[SearchCost], many: &[SearchCost], packings: &[f64]) -> [ResultF
         FrameBuilder::of(&pairs)
             .number("ν", 2, |it| it.mask.packing_fraction)
             .text("mask", |it| it.mask.setting)
-            .text("discs in cell", |it| it.cell.setting)
+            .number("discs in cell", 1, |it| it.cell.setting.parse().ok())
             .number("N_g over N_c", 2, |it| it.discs_ratio())
             .number("operations of cell crossing over those with masks", 3, |it| it.cost_ratios()[0])
             .number("time of cell crossing over that with masks", 3, |it| it.cost_ratios()[1])
@@ -181,7 +181,7 @@ fn frames(few: &[SearchCost], many: &[SearchCost], packings: &[f64]) -> [ResultF
         FrameBuilder::of(packings)
             .number("ν", 2, |nu| **nu)
             .text("mask", |nu| of_many(**nu)[0].setting)
-            .text("discs in cell", |nu| of_many(**nu)[1].setting)
+            .number("discs in cell", 1, |nu| of_many(**nu)[1].setting.parse().ok())
             .count("discs", |nu| of_many(**nu)[0].discs as u64)
             .number("operations with masks over those of cell crossing", 3, |nu| {
                 let [mask, cell] = of_many(**nu);

@@ -55,7 +55,10 @@ impl CountedProgram {
 
 /// Step of the bench with a number of discs.
 struct CountedStep {
+    /// Number that was asked for.
     particles: usize,
+    /// Number of discs: whole rows of a hexagonal lattice.
+    discs: usize,
     programs: Vec<CountedProgram>,
     arrays: StepArrays,
 }
@@ -76,7 +79,7 @@ impl CountedStep {
             .collect();
         let visited: Vec<(&Outlines, usize)> = programs.iter().map(|it| (&it.outlines, it.n)).collect();
         let arrays = StepArrays::of_step(&visited);
-        Ok(CountedStep { particles, programs, arrays })
+        Ok(CountedStep { particles, discs: lengths.discs, programs, arrays })
     }
 
     /// Sum over the programs of some parts, which are numbered in the order of the step.
@@ -94,7 +97,7 @@ impl CountedStep {
 /// Predicted and measured time of a phase (ns).
 struct PredictedPhase {
     model: &'static str,
-    particles: usize,
+    discs: usize,
     phase: &'static str,
     predicted: f64,
     measured: f64,
@@ -123,7 +126,6 @@ const MODEL_NAMES: [(&str, bool); 6] = [
 pub(crate) fn reproduce(_: &StudyEnvironment<'_>, _: StudySize) -> Result<FinishedItem, CommandFailure> {
     let (found, source) = measured_models()?;
     let mut sizes: Vec<usize> = found.steps.iter().map(|it| it.particles).collect();
-    sizes.dedup();
     sizes.sort_unstable();
     sizes.dedup();
     let steps: Vec<CountedStep> =
@@ -175,7 +177,7 @@ fn predicted_phases(
             ];
             cases.extend(MODEL_NAMES.iter().zip(predictions).map(|((model, _), predicted)| PredictedPhase {
                 model,
-                particles: step.particles,
+                discs: step.discs,
                 phase: phase.name(),
                 predicted,
                 measured: time.measured,
@@ -211,9 +213,9 @@ fn errors_of(cases: &[PredictedPhase], model: &str) -> Vec<f64> {
 fn closest_count(cases: &[PredictedPhase], model: &str) -> usize {
     let is_fitted = |name: &str| MODEL_NAMES.contains(&(name, true));
     let is_closest = |it: &&PredictedPhase| {
-        let rivals = cases.iter().filter(|other| {
-            (other.particles, other.phase) == (it.particles, it.phase) && !is_fitted(other.model)
-        });
+        let rivals = cases
+            .iter()
+            .filter(|other| (other.discs, other.phase) == (it.discs, it.phase) && !is_fitted(other.model));
         rivals.map(PredictedPhase::error).all(|error| it.error() <= error)
     };
     cases.iter().filter(|it| it.model == model).filter(is_closest).count()
@@ -262,13 +264,13 @@ fn error_frame(found: &MeasuredModels, cases: &[PredictedPhase]) -> ResultFrame 
 /// Ratio of the predictions to the measured times, a column a model.
 fn phase_frame(cases: &[PredictedPhase]) -> ResultFrame {
     let mut rows = FrameBuilder::of(cases.iter().filter(|it| it.model == MODEL_NAMES[0].0))
-        .count("particles", |it| it.particles)
+        .count("discs", |it| it.discs)
         .text("phase", |it| it.phase)
         .number("measured (µs)", 1, |it| 1e-3 * it.measured);
     for (model, _) in MODEL_NAMES {
         rows = rows.number(model, 2, |it| {
             let is_same = |other: &&PredictedPhase| {
-                (other.model, other.particles, other.phase) == (model, it.particles, it.phase)
+                (other.model, other.discs, other.phase) == (model, it.discs, it.phase)
             };
             cases.iter().find(is_same).map(|other| other.predicted / other.measured)
         });
@@ -279,7 +281,7 @@ fn phase_frame(cases: &[PredictedPhase]) -> ResultFrame {
 fn case_frame(cases: &[PredictedPhase]) -> ResultFrame {
     FrameBuilder::of(cases)
         .text("model", |it| it.model)
-        .count("particles", |it| it.particles)
+        .count("discs", |it| it.discs)
         .text("phase", |it| it.phase)
         .number("predicted (ns)", 0, |it| it.predicted)
         .number("measured (ns)", 0, |it| it.measured)
@@ -297,7 +299,7 @@ fn execution_frame(found: &MeasuredModels, steps: &[CountedStep]) -> ResultFrame
     let flops = |step: &CountedStep| step.programs.iter().map(CountedProgram::flops).sum::<f64>();
     let rate = |step: &CountedStep, name: &str| flops(step) / nanoseconds(step, name);
     FrameBuilder::of(rows)
-        .count("particles", |(step, ..)| step.particles)
+        .count("discs", |(step, ..)| step.discs)
         .text("execution", |(_, name, _)| *name)
         .number("step (µs)", 1, |(step, name, _)| 1e-3 * nanoseconds(step, name))
         .number("GFlop/s", 2, |(step, name, _)| rate(step, name))
@@ -341,9 +343,11 @@ struct RiscvRow {
     theirs: f64,
 }
 
-/// Sections of the RISC-V text with our machine file, which charges operations only, and llvm-mca, which charges addresses and expansions as well.
+/// Clock periods of a strip of a full register group, section by section of the RISC-V text: by our machine file, which charges operations only, and by
+/// llvm-mca, which charges addresses and expansions as well.
 fn riscv_rows(found: &MeasuredModels, step: Option<&CountedStep>) -> Result<Vec<RiscvRow>, CommandFailure> {
     let machine = machines::preset("sifive-x280")?;
+    let strip = machine.group_elements().unwrap_or(1.0) as u64;
     let programs = step.map_or(&[][..], |step| &step.programs);
     let own = programs.iter().zip(1..).flat_map(|(it, number)| {
         let name = format!("{}_{number}", it.part.name());
@@ -353,7 +357,7 @@ fn riscv_rows(found: &MeasuredModels, step: Option<&CountedStep>) -> Result<Vec<
     for (program, section, counts) in own {
         let is_same = |it: &&VectorSection| (&*it.program, &*it.section) == (&*program, section);
         if let Some(theirs) = found.sections.iter().find(is_same) {
-            let ours = Clock::WholeRegisters.clocks(&machine, &ProgramWork::from(counts.clone()), 1);
+            let ours = Clock::WholeRegisters.clocks(&machine, &ProgramWork::from(counts.clone()), strip);
             rows.push(RiscvRow { program, section: section.to_owned(), ours, theirs: theirs.mca });
         }
     }
@@ -406,6 +410,20 @@ mod tests {
         let closest = own.map(|(model, _)| closest_count(&cases, model));
         // Models that agree are both the closest.
         assert!(closest.sum::<usize>() >= PHASES.len() * steps.len());
+    }
+
+    /// By hand, for 32 elements in four registers of 512 bits: three gathers of a period an element and a load of 8 periods;
+    /// three products of 8.14 periods for the acceleration.
+    #[test]
+    fn riscv_strips_fill_a_register_group() {
+        let (found, _) = measured_models().unwrap();
+        let step = CountedStep::of(560, found.occupancy).unwrap();
+        let rows = riscv_rows(&found, Some(&step)).unwrap();
+        let of = |section: &str| {
+            rows.iter().find(|it| it.program == "corrector_8" && it.section == section).unwrap().ours
+        };
+        assert!((of("gather") - (3.0 * 32.0 + 8.0)).abs() < 1e-9, "{}", of("gather"));
+        assert!((of("acceleration") - 3.0 * 8.14).abs() < 1e-9, "{}", of("acceleration"));
     }
 
     /// By hand: 33 flops an element at 2 GFlop/s take 16.5 ns; the predictor loads 15 arrays and stores as many and the velocities.
