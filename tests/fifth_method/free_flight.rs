@@ -63,6 +63,7 @@ static TRIALS: Trials = Trials {
     shadow: None,
     encounter: |_, _| None,
     has_trajectories: true,
+    has_late_encounters: false,
     length: SMALLEST_RADIUS,
     has_contacts: false,
     observables: &["kinetic"],

@@ -27,6 +27,7 @@ pub(super) static TRIALS: Trials = Trials {
     shadow: None,
     encounter: |_, _| None,
     has_trajectories: true,
+    has_late_encounters: true,
     length: DistanceUnit { unit: "sizes of the system", of: size },
     has_contacts: false,
     observables: &["virial_ratio", "half_mass_radius"],

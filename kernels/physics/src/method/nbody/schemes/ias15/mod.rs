@@ -17,10 +17,12 @@ use crate::method::nbody::encounter::{NearestPair, NearestPairSearch};
 use radau::{COEFFICIENTS, NODES, continued, divided_difference, integrals, newton_of, powers_of};
 use stripmine_kernels::isa::ProgramError;
 
-/// Factor by which a step may grow, and shrink before it is rejected.
-const FACTOR: f64 = 4.0;
+/// Factor by which a step may grow.
+const GROWTH: f64 = 4.0;
+/// Factor below which a step is rejected. Rein and Spiegel accept down to 0.25, at which the end of a step is accurate, but not its middle.
+const SHRINK: f64 = 0.7;
 /// Factor of a step whose accelerations are not finite or do not settle.
-const RETREAT: f64 = 0.25;
+const RETREAT: f64 = 0.125;
 /// Iterations of a step at most, and fewest before one that gains nothing is the last.
 const ITERATIONS: usize = 12;
 const FEWEST: usize = 2;
@@ -247,11 +249,11 @@ impl Ias15 {
             self.predict(h, count);
             let ratio = self.correct(h, count, field)?;
             let factor = match ratio {
-                _ if !ratio.is_finite() => 0.5 * RETREAT,
-                _ => libm::pow(self.tolerance / ratio, 1.0 / 7.0).min(FACTOR),
+                _ if !ratio.is_finite() => RETREAT,
+                _ => libm::pow(self.tolerance / ratio, 1.0 / 7.0).min(GROWTH),
             };
             self.clock.next = factor * h;
-            if factor < RETREAT {
+            if factor < SHRINK {
                 self.clock.rejected += 1.0;
                 continue;
             }
