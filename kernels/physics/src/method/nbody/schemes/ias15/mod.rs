@@ -14,7 +14,7 @@ use super::{
     resize_columns,
 };
 use crate::method::nbody::encounter::{NearestPair, NearestPairSearch};
-use radau::{COEFFICIENTS, NODES, continued, divided_difference, integrals, newton_of, powers_of};
+use radau::{COEFFICIENTS, NODES, continued, divided_difference, integrals, newton_of, powers_of, two_sum};
 use stripmine_kernels::isa::ProgramError;
 
 /// Factor by which a step may grow.
@@ -79,16 +79,16 @@ pub(crate) struct Ias15 {
     nearest: Option<NearestPair>,
 }
 
-/// Sum of two numbers, and its rounding error (Knuth).
-fn two_sum(a: f64, b: f64) -> [f64; 2] {
-    let sum = a + b;
-    let second = sum - a;
-    [sum, (a - (sum - second)) + (b - second)]
+/// Product of two numbers, and its rounding error.
+fn two_product(a: f64, b: f64) -> [f64; 2] {
+    let product = a * b;
+    [product, a.mul_add(b, -product)]
 }
 
-/// Adds a small number to a number with a low part.
-fn add_low(high: f64, low: f64, small: f64) -> [f64; 2] {
-    two_sum(high, small + low)
+/// Sum of two numbers with low parts.
+fn add_low([high, low]: [f64; 2], [more, more_low]: [f64; 2]) -> [f64; 2] {
+    let [sum, error] = two_sum(high, more);
+    two_sum(sum, error + (low + more_low))
 }
 
 fn coefficients(of: &Polynomials, axis: usize, body: usize) -> [f64; COEFFICIENTS] {
@@ -143,12 +143,15 @@ impl Ias15 {
     /// Position and velocity of a body after a part `s` of the present step of length `h`, each with its low part.
     fn state_at(&self, s: f64, h: f64, axis: usize, body: usize) -> [[f64; 2]; 2] {
         let powers = coefficients(&self.powers, axis, body);
-        let [kick, drift] = integrals(self.acceleration[axis][body], &powers, s, h);
-        let (velocity, velocity_low) = (self.velocity[axis][body], self.velocity_low[axis][body]);
-        let moved = h * s * velocity + (h * s * velocity_low + drift);
+        let part = h * s;
+        let ([mean, mean_low], drift) = integrals(self.acceleration[axis][body], &powers, s, h);
+        let [kick, kick_low] = two_product(part, mean);
+        let velocity = [self.velocity[axis][body], self.velocity_low[axis][body]];
+        let [moved, moved_low] = two_product(part, velocity[0]);
+        let moved = add_low([moved, moved_low], [drift, part * velocity[1]]);
         [
-            add_low(self.position[axis][body], self.position_low[axis][body], moved),
-            add_low(velocity, velocity_low, kick),
+            add_low([self.position[axis][body], self.position_low[axis][body]], moved),
+            add_low(velocity, [kick, kick_low + part * mean_low]),
         ]
     }
 
@@ -163,7 +166,7 @@ impl Ias15 {
             }
         }
         let clock = &mut self.clock;
-        [clock.time, clock.time_low] = add_low(clock.time, clock.time_low, h);
+        [clock.time, clock.time_low] = add_low([clock.time, clock.time_low], [h, 0.0]);
         let found = self.encounters.nearest(&self.position, count);
         let known = self.nearest.map_or(f64::INFINITY, |known| known.distance);
         self.nearest = found.filter(|found| found.distance < known).or(self.nearest);

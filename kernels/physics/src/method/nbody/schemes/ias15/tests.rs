@@ -58,10 +58,8 @@ fn pythagorean_problem_matches_taylor_series() {
         for (body, expected) in expected.iter().enumerate() {
             let found = position(&running, body);
             let off = (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
-            println!("{steps} {body} {off:e}");
             assert!(off < bound, "after {steps}: body {body} is at {found:?}, off by {off:e}");
         }
-        println!("{:?}", running.summary());
         for name in ["energy_error", "largest_energy_error"] {
             assert!(number(&running, name).abs() < 1e-13, "{:?}", running.summary());
         }
@@ -105,17 +103,16 @@ fn eccentric_orbits_match_keplers_equation() {
             };
             worst = worst.max(off(1.0).min(off(-1.0)));
         }
-        println!("{eccentricity}: {worst:e} {:?}", running.summary());
         assert!(worst < bound, "{eccentricity}: off by {worst:e}");
         assert!(number(&running, "largest_energy_error").abs() < 1e-14, "{:?}", running.summary());
     }
 }
 
-/// Three bodies on the figure of eight take each other's places after a third of the period, 6.325 897 4 for masses of 1 and √3 times that for a
+/// Three bodies on the figure of eight take each other's places after a third of the period, 6.325 913 98 for masses of 1 and √3 times that for a
 /// total mass of 1 (Simó 2002), within the eight decimals of their start.
 #[test]
 fn three_bodies_follow_each_other() {
-    let third = 6.325_897_4 * 3f64.sqrt() / 3.0;
+    let third = 6.325_913_98 * 3f64.sqrt() / 3.0;
     let sets = ["integrator.kind=ias15", &format!("integrator.dt={third:?}"), "run.steps=30"];
     let mut running = started("figure-eight", &sets);
     let places = |running: &NbodySimulation| [0, 1, 2].map(|body| position(running, body));
@@ -125,12 +122,11 @@ fn three_bodies_follow_each_other() {
         (0..3).flat_map(of).fold(0.0, f64::max)
     };
     advance(&mut running, 1).unwrap();
-    let shift = if off(places(&running), 1) < 1e-6 { 1 } else { 2 };
+    let shift = if off(places(&running), 1) < 0.1 { 1 } else { 2 };
     for (steps, by) in [(1, shift), (2, 3 - shift), (30, 0)] {
         advance(&mut running, steps).unwrap();
         let off = off(places(&running), by);
-        println!("{steps} {off:e}");
-        assert!(off < 1e-6 * steps as f64, "{steps}: off by {off:e}");
+        assert!(off < 1e-7 * steps as f64, "{steps}: off by {off:e}");
     }
     assert!(number(&running, "largest_energy_error").abs() < 1e-14, "{:?}", running.summary());
 }
@@ -198,14 +194,12 @@ fn head_on_collisions_are_reported() {
     let failure = advance(&mut running, 20).unwrap_err();
     assert_eq!(failure.kind.name(), "collision", "{failure}");
     assert_eq!(failure.culprits.iter().map(|body| body.id).collect::<Vec<_>>(), [1, 2]);
-    println!("{failure}");
     for word in ["bodies 1 and 2", "at time 1.1107207", "2, 0)", "law.softening"] {
         assert!(failure.to_string().contains(word), "{word}: {failure}");
     }
     // Softened, they pass through each other and keep their energy.
     let mut softened = started("figure-eight", &[&sets[..], &["law.softening=0.01"]].concat());
     advance(&mut softened, 20).unwrap();
-    println!("{:?}", softened.summary());
     assert!(number(&softened, "largest_energy_error").abs() < 1e-13, "{:?}", softened.summary());
 }
 
