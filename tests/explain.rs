@@ -498,6 +498,7 @@ fn plans_of_bodies_include_their_encounters() {
     let step = found["decisions"].as_array().unwrap().iter().find(|it| it["what"] == "dt").unwrap();
     assert!(step["why"].as_str().unwrap().contains("over the whole run of 70"), "{step}");
     assert!(found["expected"]["most"].as_f64().unwrap() <= 1e-6, "{found}");
+    assert_eq!(found["step"], 0.01, "an interval of output stays: {found}");
     let mut run = Command::cargo_bin("stripmine").unwrap();
     ends_with(&run.current_dir(folder).args(["run", "plan.toml", "--out", "run"]).output().unwrap(), 0, &[]);
     let summary: Value = serde_json::from_slice(&fs::read(folder.join("run/summary.json")).unwrap()).unwrap();

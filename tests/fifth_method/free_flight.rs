@@ -64,6 +64,7 @@ static TRIALS: Trials = Trials {
     encounter: |_, _| None,
     has_trajectories: true,
     has_late_encounters: false,
+    adaptive: &[],
     length: SMALLEST_RADIUS,
     has_contacts: false,
     observables: &["kinetic"],

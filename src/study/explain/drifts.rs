@@ -251,12 +251,16 @@ impl SceneTrials<'_> {
         };
         let first = |configuration: &MeasuredConfiguration| match of_finest(configuration) {
             Some(leader) => Some(leader.drift.as_ref()?.step_for(wanted)?.step),
+            None if self.is_adaptive(&self.choice(configuration)) => Some(own),
             None => Some(rounded(LONGEST * own, 4)),
+        };
+        let is_settled = |configuration: &MeasuredConfiguration| {
+            configuration.drift.is_some() && self.is_adaptive(&self.choice(configuration))
         };
         let runs = configurations
             .iter()
             .enumerate()
-            .filter(|(_, configuration)| is_tried(configuration))
+            .filter(|(_, configuration)| is_tried(configuration) && !is_settled(configuration))
             .filter_map(|(at, configuration)| {
                 let step = configuration
                     .drift

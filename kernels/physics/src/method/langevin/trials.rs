@@ -21,6 +21,7 @@ pub(super) static TRIALS: Trials = Trials {
     encounter: |_, _| None,
     has_trajectories: false,
     has_late_encounters: false,
+    adaptive: &[],
     length: SMALLEST_RADIUS,
     has_contacts: false,
     observables: &["temperature", "potential", "pressure"],

@@ -39,6 +39,7 @@ pub(super) static TRIALS: Trials = Trials {
     encounter,
     has_trajectories: true,
     has_late_encounters: false,
+    adaptive: &[],
     length: SMALLEST_RADIUS,
     has_contacts: true,
     observables: &["temperature", "pressure", "flow", "contacts"],

@@ -28,6 +28,7 @@ pub(super) static TRIALS: Trials = Trials {
     encounter: |_, _| None,
     has_trajectories: true,
     has_late_encounters: true,
+    adaptive: &["ias15"],
     length: DistanceUnit { unit: "sizes of the system", of: size },
     has_contacts: false,
     observables: &["virial_ratio", "half_mass_radius"],

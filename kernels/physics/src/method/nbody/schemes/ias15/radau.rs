@@ -2,6 +2,11 @@
 //!
 //! With s from 0 at the beginning of a step to 1 at its end, a(s) = a₀ + b₀ s + … + b₆ s⁷ = a₀ + g₀ s + g₁ s (s − h₁) + … .
 
+#![allow(
+    clippy::excessive_precision,
+    reason = "constants have more digits than the compiler keeps, so that it rounds them"
+)]
+
 /// Coefficients of a polynomial beside the acceleration at the beginning.
 pub(super) const COEFFICIENTS: usize = 7;
 
