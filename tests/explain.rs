@@ -495,8 +495,9 @@ fn plans_of_bodies_include_their_encounters() {
     let folder = folder.path();
     let asked = ["pythagorean", "--of", "energy_error", "--error", "1e-6", "--seconds", "20", "--json"];
     let found = plan(&explain(folder, &[&asked[..], &["--write", "plan.toml"]].concat()));
-    let step = found["decisions"].as_array().unwrap().iter().find(|it| it["what"] == "dt").unwrap();
-    assert!(step["why"].as_str().unwrap().contains("over the whole run of 70"), "{step}");
+    let mut decisions = found["decisions"].as_array().unwrap().iter();
+    let says_time = |it: &Value| it["why"].as_str().unwrap().contains("over the whole run of 70");
+    assert!(decisions.any(says_time), "{found}");
     assert!(found["expected"]["most"].as_f64().unwrap() <= 1e-6, "{found}");
     assert_eq!(found["step"], 0.01, "an interval of output stays: {found}");
     let mut run = Command::cargo_bin("stripmine").unwrap();

@@ -129,8 +129,13 @@ pub trait BodyIntegrator: Send {
         vec![]
     }
 
-    /// Restores the numbers of [`carried_numbers`](Self::carried_numbers), in their order.
-    fn take_up_numbers(&mut self, _numbers: &[f64]) {}
+    /// Restores the numbers of [`carried_numbers`](Self::carried_numbers), in their order, after some intervals of `dt` (time).
+    ///
+    /// # Errors
+    /// A message if the numbers are not those of such a state.
+    fn take_up_numbers(&mut self, _numbers: &[f64], _intervals: u64, _dt: f64) -> Result<(), String> {
+        Ok(())
+    }
 
     /// Low parts of the positions of the bodies, below their rounding; none if the scheme has none.
     fn position_low(&self) -> Option<&StateColumns> {

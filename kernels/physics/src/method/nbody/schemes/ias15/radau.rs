@@ -135,8 +135,8 @@ pub(super) fn continued(powers: &[f64; COEFFICIENTS], ratio: f64) -> [f64; COEFF
         scale *= ratio;
         // Σ over j ≥ k of the binomial coefficient of j + 1 over k + 1, times bⱼ.
         let (mut binomial, mut sum) = (1.0, 0.0);
-        for j in k..COEFFICIENTS {
-            sum += binomial * powers[j];
+        for (j, power) in powers.iter().enumerate().skip(k) {
+            sum += binomial * power;
             binomial *= (j + 2) as f64 / (j + 1 - k) as f64;
         }
         scale * sum
@@ -183,9 +183,8 @@ mod tests {
             rows.swap(pivot, best.unwrap());
             for row in (0..8).filter(|&row| row != pivot) {
                 let factor = rows[row][pivot] / rows[pivot][pivot];
-                for column in pivot..9 {
-                    rows[row][column] -= factor * rows[pivot][column];
-                }
+                let of_pivot = rows[pivot].clone();
+                rows[row].iter_mut().zip(&of_pivot).for_each(|(value, of)| *value -= factor * of);
             }
         }
         for k in 0..15 {
