@@ -212,8 +212,6 @@ fn written_scenes_are_read_back() {
             "bench",
             vec!["machine.execution=eager", "machine.instruction_set=scalar", "law.contact_arm=overlap"],
         ),
-        ("pythagorean", vec!["integrator.tolerance=1e-8", "law.softening=0.1"]),
-        ("kepler", vec!["integrator.kind=ias15", "machine.engine=reference"]),
         ("two-discs", vec!["particles.radii=[0.5, 0.45]", "particles.wall_positions=[[1.0, 1.0]]"]),
         ("two-discs", vec!["units=\"quotes \\\" and \\\\\"", "law.cohesionless=false", "law.inertia=sphere"]),
         (

@@ -197,9 +197,7 @@ impl NbodySimulation {
         self.state.bodies.position.clone_from(position);
         self.state.bodies.velocity.clone_from(velocity);
         self.state.scheme.take_up(&self.state.bodies, std::mem::take(carried));
-        // The numbers are those of the state before this step.
-        let Elapsed { steps, dt, .. } = self.state.elapsed;
-        let _ = self.state.scheme.take_up_numbers(numbers, steps, dt);
+        self.state.scheme.take_up_numbers(numbers);
         self.state.field.get_mut().evaluations = *evaluations;
     }
 
@@ -335,7 +333,8 @@ impl Stepwise for NbodyRunState {
         run.state.scheme.take_up(&run.state.bodies, carried);
         let names = run.state.scheme.carried_numbers().into_iter();
         let numbers: Vec<f64> = names.map(|(name, _)| snapshot.sum(name)).collect::<Result<_, _>>()?;
-        run.state.scheme.take_up_numbers(&numbers, clock.steps, run.state.elapsed.dt)?;
+        run.state.scheme.take_up_numbers(&numbers);
+        run.state.scheme.check_numbers(clock.steps, run.state.elapsed.dt)?;
         run.state.elapsed.steps = clock.steps;
         run.state.field.get_mut().evaluations = evaluations;
         *run.method.seen.get_mut() = None;

@@ -129,11 +129,14 @@ pub trait BodyIntegrator: Send {
         vec![]
     }
 
-    /// Restores the numbers of [`carried_numbers`](Self::carried_numbers), in their order, after some intervals of `dt` (time).
+    /// Restores the numbers of [`carried_numbers`](Self::carried_numbers), in their order.
+    fn take_up_numbers(&mut self, _numbers: &[f64]) {}
+
+    /// Checks that the present numbers are those of a state after some intervals of `dt` (time).
     ///
     /// # Errors
-    /// A message if the numbers are not those of such a state.
-    fn take_up_numbers(&mut self, _numbers: &[f64], _intervals: u64, _dt: f64) -> Result<(), String> {
+    /// A message if they are not.
+    fn check_numbers(&self, _intervals: u64, _dt: f64) -> Result<(), String> {
         Ok(())
     }
 

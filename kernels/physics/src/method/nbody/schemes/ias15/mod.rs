@@ -342,17 +342,20 @@ impl BodyIntegrator for Ias15 {
         ]
     }
 
-    fn take_up_numbers(&mut self, numbers: &[f64], intervals: u64, dt: f64) -> Result<(), String> {
-        let &[time, time_low, length, next, outputs, accepted, rejected, shortest] = numbers else {
-            return Err("the numbers of the step are missing".to_owned());
-        };
+    fn take_up_numbers(&mut self, numbers: &[f64]) {
+        if let &[time, time_low, length, next, outputs, accepted, rejected, shortest] = numbers {
+            self.clock = StepClock { time, time_low, length, next, outputs, accepted, rejected, shortest };
+        }
+    }
+
+    fn check_numbers(&self, intervals: u64, dt: f64) -> Result<(), String> {
+        let StepClock { time, length, next, outputs, .. } = self.clock;
         let now = intervals as f64 * dt;
         let is_begun = length > 0.0 && next > 0.0 && time >= 0.0 && time <= now && now <= time + length;
-        if !(outputs == intervals as f64 && (is_begun || intervals == 0 && length == 0.0)) {
-            return Err(format!("a step of {length} from time {time} does not contain the time {now}"));
+        match outputs == intervals as f64 && (is_begun || intervals == 0 && length == 0.0) {
+            true => Ok(()),
+            false => Err(format!("a step of {length} from time {time} does not contain the time {now}")),
         }
-        self.clock = StepClock { time, time_low, length, next, outputs, accepted, rejected, shortest };
-        Ok(())
     }
 
     fn position_low(&self) -> Option<&StateColumns> {
