@@ -487,3 +487,39 @@ fn error_of_a_mean_is_charted_against_cost() {
         assert_eq!(svg.count(), if chart == "accuracy" { 2 } else { 1 });
     }
 }
+
+/// Three bodies are judged over the whole run, with its nearest encounter at 15.83: the plan says so, and reaches the error when it runs.
+#[test]
+fn plans_of_bodies_include_their_encounters() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let asked = ["pythagorean", "--of", "energy_error", "--error", "1e-6", "--seconds", "20", "--json"];
+    let found = plan(&explain(folder, &[&asked[..], &["--write", "plan.toml"]].concat()));
+    let mut decisions = found["decisions"].as_array().unwrap().iter();
+    let says_time = |it: &Value| it["why"].as_str().unwrap().contains("over the whole run of 70");
+    assert!(decisions.any(says_time), "{found}");
+    assert!(found["expected"]["most"].as_f64().unwrap() <= 1e-6, "{found}");
+    assert_eq!(found["step"], 0.01, "an interval of output stays: {found}");
+    let mut run = Command::cargo_bin("stripmine").unwrap();
+    ends_with(&run.current_dir(folder).args(["run", "plan.toml", "--out", "run"]).output().unwrap(), 0, &[]);
+    let summary: Value = serde_json::from_slice(&fs::read(folder.join("run/summary.json")).unwrap()).unwrap();
+    assert!(summary["energy_error"].as_f64().unwrap().abs() <= 1e-6, "{summary}");
+    assert!(summary["nearest_encounter"]["distance"].as_f64().unwrap() < 5e-4, "{summary}");
+}
+
+/// The scene as it stands is a candidate: without a target error no plan has a larger error than the scene's own.
+#[test]
+fn plans_are_no_worse_than_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["pythagorean", "kepler"] {
+        let found =
+            plan(&explain(folder.path(), &[scene, "--of", "energy_error", "--seconds", "10", "--json"]));
+        let most = found["expected"]["most"].as_f64().unwrap();
+        if scene == "pythagorean" {
+            assert!(most < 1e-12, "{found}");
+        }
+        if let Some(own) = found["own"]["error"]["most"].as_f64() {
+            assert!(most <= own, "{scene}: {found}");
+        }
+    }
+}

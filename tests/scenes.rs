@@ -128,9 +128,10 @@ fn cells_of_the_paper_can_be_set() {
 }
 
 /// Keys that no preset and no scene of the gallery sets, each with its purpose.
-const NOT_SHOWN: [(&str, &str); 39] = [
+const NOT_SHOWN: [(&str, &str); 40] = [
     ("integrator.damping", "the friction of the paper's integrator, which the item of energies varies"),
     ("integrator.on_long_step", "a run continues with rare too-fast discs, which thermo.csv counts"),
+    ("integrator.tolerance", "the default of adaptive steps is accurate to rounding"),
     ("law.contact_arm", "contacts as in LAMMPS, for comparison"),
     ("law.gravitational_constant", "units in which G is not 1"),
     ("law.inertia", "spheres that move in a plane; studies of stability vary it"),

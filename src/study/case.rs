@@ -82,7 +82,13 @@ impl StudyCase {
 
     /// Time step of the scene; none where the method has none (time).
     pub(crate) fn step(&self) -> Option<f64> {
-        self.values.number(self.entry.trials?.step)
+        let step = self.entry.trials?.step;
+        // A method may derive the step from other keys: the resolved scene has it.
+        self.values.number(step).or_else(|| {
+            let resolved =
+                SceneValues::parse(&self.what, &self.prepared.scene, &[], &vocabularies(self.methods));
+            resolved.ok()?.number(step)
+        })
     }
 
     /// Duration of the scene (time); none where its end is a number of events.

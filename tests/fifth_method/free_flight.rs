@@ -63,6 +63,8 @@ static TRIALS: Trials = Trials {
     shadow: None,
     encounter: |_, _| None,
     has_trajectories: true,
+    has_late_encounters: false,
+    adaptive: &[],
     length: SMALLEST_RADIUS,
     has_contacts: false,
     observables: &["kinetic"],

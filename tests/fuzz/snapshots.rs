@@ -25,6 +25,7 @@ const SCENES: &[(&str, &[&str])] = &[
     ("langevin-free", &["particles.count=24"]),
     ("kepler", &["integrator.kind=gear-6"]),
     ("kepler", &["integrator.kind=hermite-4"]),
+    ("kepler", &["integrator.kind=ias15"]),
     ("kepler", &["integrator.kind=leapfrog"]),
     ("kepler", &["integrator.kind=damped-euler"]),
 ];

@@ -5,6 +5,7 @@ use super::plan::{TIME_WITHIN, own_rows};
 use super::recommended::{Decision, LikelyRange, RunPlan};
 use super::words::seconds;
 use crate::study::StudyCase;
+use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
 
 /// Subject of the decision that leaves the scene as it stands.
@@ -30,8 +31,13 @@ impl RunPlan {
         let phases = of_own.map_or(vec![], |configuration| {
             configuration.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
         });
+        // A conserved quantity has no mean: it is judged over the whole run.
+        let judged = match self.mean {
+            Some(_) => String::new(),
+            None => format!("; judged over the whole run of {}", significant(time, 3)),
+        };
         let why = format!(
-            "no plan reaches an equally small error in less time; the best takes {}",
+            "no plan reaches an equally small error in less time; the best takes {}{judged}",
             seconds(self.seconds.likely)
         );
         RunPlan {

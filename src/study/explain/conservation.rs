@@ -3,7 +3,7 @@
 use super::PlanTarget;
 use super::bias::BiasEstimate;
 use super::decisions::decisions;
-use super::drift::StepDeviations;
+use super::drift::{StepDeviation, StepDeviations};
 use super::drifts::WANTED;
 use super::findings::{Findings, MeasuredConfiguration};
 use super::lengths::{PlanCandidate, RunLength};
@@ -39,7 +39,14 @@ pub(crate) fn conserved_quantity_plan(
     };
     let mut weighed: Vec<PlanCandidate<'_>> = usable()
         .filter_map(|configuration| {
-            let found = configuration.drift.as_ref()?.step_for(wanted)?;
+            let drift = configuration.drift.as_ref()?;
+            // The scene as it stands is a candidate even if a shorter step happens to be worse.
+            let as_it_stands = || {
+                let is_own = configuration.label == case.own.label();
+                let farthest = own_error.filter(|error| is_own && *error <= wanted)?;
+                Some(StepDeviation { step: case.step()?, farthest })
+            };
+            let found = drift.step_for(wanted).or_else(as_it_stands)?;
             let optimum = Optimum {
                 part: found.step / configuration.step?,
                 bias: BiasEstimate::exactly(found.farthest),

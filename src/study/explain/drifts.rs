@@ -55,9 +55,13 @@ impl SceneTrials<'_> {
         };
         let (time, own) = self.case.duration().zip(self.case.step()).ok_or_else(unknown)?;
         let (mut start, mut row) = (0.0, 0.0);
-        while let Some((at, step)) = self.next_run(&configurations, [time, own]) {
+        // Without a target error the plan has to match the scene as it stands, which is run first.
+        let wanted = match self.target.error {
+            Some(width) => in_unit(width, 1.0),
+            None => self.deviation_as_it_stands(&configurations, [time, own]).unwrap_or(WANTED),
+        };
+        while let Some((at, step)) = self.next_run(&configurations, [time, own], wanted) {
             let key = format!("whole run|{}|{step}", configurations[at].label);
-            let wanted = self.target_deviation(&configurations, own);
             let Ok(run) = self.journal.recall(
                 &key,
                 |_| true,
@@ -112,28 +116,36 @@ impl SceneTrials<'_> {
         })
     }
 
-    /// Runs the scene as it stands, where time is left: its user knows its values.
-    fn own_run(&self, configurations: &mut [MeasuredConfiguration], [time, own]: [f64; 2]) {
+    /// Adds the deviation of the scene as it stands to its own configuration: its user knows its values, and no plan may be worse.
+    fn own_run(&self, configurations: &mut [MeasuredConfiguration], of_scene: [f64; 2]) {
         let label = self.case.own.label();
-        let Some(configuration) = configurations
-            .iter_mut()
-            .find(|configuration| configuration.label == label && configuration.dropped.is_none())
-        else {
-            return;
-        };
-        let seconds = configuration
-            .cost
-            .zip(configuration.step)
-            .map_or(f64::INFINITY, |(cost, step)| cost * step / own * time);
-        if configuration.drift.as_ref().is_some_and(|drift| drift.at(own).is_some()) || seconds > self.left()
-        {
-            return;
+        let farthest = self.deviation_as_it_stands(configurations, of_scene);
+        let configuration = configurations.iter_mut().find(|configuration| configuration.label == label);
+        if let (Some(configuration), Some(farthest)) = (configuration, farthest) {
+            let drift = configuration.drift.get_or_insert_default();
+            if drift.at(of_scene[1]).is_none() {
+                drift.add(of_scene[1], farthest);
+            }
         }
-        let key = format!("whole run|{label}|{own}");
+    }
+
+    /// Deviation in a run of the scene as it stands; none where no time is left for it.
+    fn deviation_as_it_stands(
+        &self,
+        configurations: &[MeasuredConfiguration],
+        [time, own]: [f64; 2],
+    ) -> Option<f64> {
+        let label = self.case.own.label();
+        let configuration = configurations.iter().find(|configuration| configuration.label == label)?;
+        if let Some(known) = configuration.drift.as_ref().and_then(|drift| drift.at(own)) {
+            return Some(known);
+        }
+        if configuration.cost? * configuration.step? / own * time > self.left() {
+            return None;
+        }
+        let key = format!("as it stands|{label}|{own}");
         let run = || self.whole_run(configuration, own, [time, f64::INFINITY]);
-        if let Ok(run) = self.journal.recall(&key, |_| true, run) {
-            configuration.drift.get_or_insert_default().add(own, run.farthest);
-        }
+        self.journal.recall(&key, |_| true, run).ok().map(|run| run.farthest)
     }
 
     /// Runs the whole scene and returns the deviation. If that is within `wanted` and starts are random, more starts are run, and the bound for
@@ -200,8 +212,8 @@ impl SceneTrials<'_> {
         &self,
         configurations: &[MeasuredConfiguration],
         [time, own]: [f64; 2],
+        wanted: f64,
     ) -> Option<(usize, f64)> {
-        let wanted = self.target_deviation(configurations, own);
         let seconds = |configuration: &MeasuredConfiguration, step: f64| {
             Some(configuration.cost? * configuration.step? / step * time)
         };
@@ -239,12 +251,16 @@ impl SceneTrials<'_> {
         };
         let first = |configuration: &MeasuredConfiguration| match of_finest(configuration) {
             Some(leader) => Some(leader.drift.as_ref()?.step_for(wanted)?.step),
+            None if self.is_adaptive(&self.choice(configuration)) => Some(own),
             None => Some(rounded(LONGEST * own, 4)),
+        };
+        let is_settled = |configuration: &MeasuredConfiguration| {
+            configuration.drift.is_some() && self.is_adaptive(&self.choice(configuration))
         };
         let runs = configurations
             .iter()
             .enumerate()
-            .filter(|(_, configuration)| is_tried(configuration))
+            .filter(|(_, configuration)| is_tried(configuration) && !is_settled(configuration))
             .filter_map(|(at, configuration)| {
                 let step = configuration
                     .drift
@@ -258,16 +274,6 @@ impl SceneTrials<'_> {
         let fits = |run: &(usize, f64, f64, f64)| run.3 < best && run.2 < best && run.2 <= self.left();
         let next = runs.filter(fits).min_by(|a, b| a.3.total_cmp(&b.3))?;
         Some((next.0, next.1))
-    }
-
-    /// Target error of a run: the requested one, or the scene's own once it is known.
-    fn target_deviation(&self, configurations: &[MeasuredConfiguration], own: f64) -> f64 {
-        let of_own = || {
-            let own_configuration =
-                configurations.iter().find(|configuration| configuration.label == self.case.own.label());
-            own_configuration.and_then(|configuration| configuration.drift.as_ref()?.at(own))
-        };
-        self.target.error.map(|width| in_unit(width, 1.0)).or_else(of_own).unwrap_or(WANTED)
     }
 }
 

@@ -111,7 +111,11 @@ impl SceneTrials<'_> {
                 continue;
             }
             let mut why = sample.missing_mean_reason();
-            if end.is_some() || is_changing_beyond_end(&sample) || is_hardly_known(&sample) {
+            let is_part = self.is_part_of_run(&sample);
+            if is_part {
+                why = "the trials end before the scene does, and close encounters may come later".to_owned();
+            }
+            if is_part || end.is_some() || is_changing_beyond_end(&sample) || is_hardly_known(&sample) {
                 enough = self.sufficient_trial_time(&sample);
                 self.whole = self.affordable_whole_time(&sample, self.left());
                 if let Some(time) = self.whole {
@@ -130,6 +134,12 @@ impl SceneTrials<'_> {
             }
             seconds = longer;
         }
+    }
+
+    /// True if a sample says nothing about the rest of the run, in which close encounters may come.
+    fn is_part_of_run(&self, sample: &TrialSample) -> bool {
+        let has_late_encounters = self.case.entry.trials.is_some_and(|trials| trials.has_late_encounters);
+        has_late_encounters && self.target.window.is_none() && !sample.reaches_scene_end
     }
 
     /// True if a run of some seconds extends beyond the end of the scene's own run.
@@ -239,6 +249,7 @@ impl SceneTrials<'_> {
     /// Trial time that is long enough for a mean (s), estimated from a sample that was too short.
     fn sufficient_trial_time(&self, sample: &TrialSample) -> Option<f64> {
         let time = match sample.outcome {
+            _ if self.is_part_of_run(sample) => super::whole_runs::RUNS[0] as f64 * self.case.duration()?,
             AverageOutcome::TooShort { enough_at, .. } => enough_at,
             // The end of the change is unknown before the end of the scene's own run.
             AverageOutcome::Changing { .. } if !sample.reaches_scene_end => {

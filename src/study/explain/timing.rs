@@ -109,7 +109,11 @@ impl SceneTrials<'_> {
             }
         };
         let limit = prepared.step_limits.iter().min_by(|a, b| a.step.total_cmp(&b.step));
-        let longest = own_step.map(|own| limit.map_or(TIMES_OWN * own, |limit| OF_LIMIT * limit.step));
+        let longest = own_step.map(|own| match limit {
+            _ if self.is_adaptive(choice) => own,
+            None => TIMES_OWN * own,
+            Some(limit) => OF_LIMIT * limit.step,
+        });
         configuration.bound = limit.map(bounded);
         let mut step = longest;
         for _ in 0..HALVINGS {
@@ -132,6 +136,12 @@ impl SceneTrials<'_> {
             step = Some(shorter);
         }
         configuration
+    }
+
+    /// True if the steps of a configuration adapt, so that its step is an interval of output.
+    pub(super) fn is_adaptive(&self, choice: &SettingChoice) -> bool {
+        let (trials, scheme) = (self.case.entry.trials, choice.scheme());
+        trials.zip(scheme).is_some_and(|(trials, scheme)| trials.adaptive.contains(&scheme.name))
     }
 
     /// Ratio of the cost with one thread to that with all threads.

@@ -21,6 +21,10 @@ pub struct Trials {
     pub encounter: fn(&Prepared, EncounterGeometry) -> Option<String>,
     /// True if runs with different steps follow the same trajectories. With noise they do not, and only means can be compared.
     pub has_trajectories: bool,
+    /// True if close encounters late in a run may decide its results, so that part of a run says nothing about the rest.
+    pub has_late_encounters: bool,
+    /// Settings of the axis that decides the order whose steps adapt: their step is an interval of output.
+    pub adaptive: &'static [&'static str],
     /// Unit of distances between states.
     pub length: DistanceUnit,
     /// True if particles touch and separate, so that two particles alone make a collision.

@@ -20,6 +20,8 @@ pub(super) static TRIALS: Trials = Trials {
     shadow: None,
     encounter: |_, _| None,
     has_trajectories: false,
+    has_late_encounters: false,
+    adaptive: &[],
     length: SMALLEST_RADIUS,
     has_contacts: false,
     observables: &["temperature", "potential", "pressure"],

@@ -38,6 +38,8 @@ pub(super) static TRIALS: Trials = Trials {
     shadow: Some(ShadowEnergy { integrators: &["velocity-verlet"], temperature: "temperature" }),
     encounter,
     has_trajectories: true,
+    has_late_encounters: false,
+    adaptive: &[],
     length: SMALLEST_RADIUS,
     has_contacts: true,
     observables: &["temperature", "pressure", "flow", "contacts"],

@@ -2,15 +2,16 @@
 
 use super::choice;
 use super::imported::bodies_of_file;
-use super::keys::{BODIES, ENGINE, FILE, GENERATE, SOFTENING};
-use super::options::{ForceEngine, StartKind};
+use super::keys::{BODIES, ENGINE, FILE, GENERATE, ROOTS, SOFTENING};
+use super::options::{ArithmeticKind, ForceEngine, StartKind};
 use super::scene::NbodyScene;
 use super::starts::{InitialBody, initial_bodies};
 use crate::method::Prepared;
 use crate::particles::{Particle, ParticleKind, Particles};
 use crate::scene::{
-    MistakeKind, PRECISION, Precision, ReadBinding, SceneError, SceneErrors, SceneValues, Warning,
+    Key, MistakeKind, PRECISION, Precision, ReadBinding, SceneError, SceneErrors, SceneValues, Warning,
 };
+use crate::words::Words;
 use std::collections::HashMap;
 
 /// Smallest mass ratio in single precision: products of two such masses are still normal numbers.
@@ -53,6 +54,9 @@ pub(super) fn check_nbody_scene(values: SceneValues) -> Result<CheckedNbody, Sce
         );
         let error = values.spot(&PRECISION).error(MistakeKind::Contradiction, message);
         errors.push(error.expecting("\"f64\", or another engine"));
+    }
+    if scene.scheme.is_adaptive() {
+        errors.extend(without_direct_sum(&values, &scene));
     }
     if scene.start.kind == StartKind::List {
         errors.extend(wrong_rows(&values, &scene));
@@ -101,6 +105,29 @@ fn radius_shown(scene: &NbodyScene, bodies: &[InitialBody]) -> f64 {
         scale = distances.get(distances.len() / 2).copied().unwrap_or(scale);
     }
     scene.softening.max((SMALL * scale).clamp(f64::MIN_POSITIVE, f64::MAX))
+}
+
+/// Errors for sums that round more than the direct sum in double precision, which steps that adapt need.
+fn without_direct_sum(values: &SceneValues, scene: &NbodyScene) -> Vec<SceneError> {
+    let mut errors = vec![];
+    let kind = scene.scheme.word();
+    let mut refuse = |key: &Key, word: &str, expected: &str| {
+        let message = format!(
+            "`{}` is \"{word}\", but integrator.kind = \"{kind}\" sums forces pair by pair in double precision",
+            key.path()
+        );
+        errors.push(values.spot(key).error(MistakeKind::Contradiction, message).expecting(expected));
+    };
+    if !matches!(scene.engine, ForceEngine::Auto | ForceEngine::Reference) {
+        refuse(&ENGINE, scene.engine.word(), "\"auto\", \"reference\", or another integrator.kind");
+    }
+    if scene.precision == Precision::Mixed {
+        refuse(&PRECISION, scene.precision.word(), "\"f64\", or another integrator.kind");
+    }
+    if scene.arithmetic != ArithmeticKind::Exact {
+        refuse(&ROOTS, scene.arithmetic.word(), "\"exact\", or another integrator.kind");
+    }
+    errors
 }
 
 /// Errors for fewer than two bodies, or for masses that are not positive.

@@ -18,6 +18,10 @@ pub(super) fn resolve_engine(scene: &mut NbodyScene, bodies: usize) -> Vec<Strin
     if scene.engine == ForceEngine::Auto {
         let is_plain = scene.precision == Precision::F64 && scene.arithmetic == ArithmeticKind::Exact;
         let (engine, reason) = match (is_plain, bodies <= FEW) {
+            _ if scene.scheme.is_adaptive() => (
+                ForceEngine::Reference,
+                "the only engine that sums positions beyond double precision, as encounters need".to_owned(),
+            ),
             (false, _) => {
                 (ForceEngine::Fast, "only this engine has single precision and estimated roots".to_owned())
             }

@@ -11,7 +11,7 @@ use crate::method::MethodEntry;
 pub static ENTRY: MethodEntry = MethodEntry {
     vocabulary: &VOCABULARY,
     source: "all-pairs gravity (PWP)",
-    doc: "bodies in space with softened all-pairs gravity, by ten integrators",
+    doc: "bodies in space with softened all-pairs gravity, by eleven integrators",
     quantities: QUANTITIES,
     prepare,
     benches: BENCHES,

@@ -6,7 +6,7 @@ use super::ranked::ranked_sums;
 use super::scene::NbodyScene;
 use super::schemes::{AccelerationField, SchemeName};
 use super::shifted::ShiftedPrograms;
-use super::sums::{ForceSums, StopCallback, check_stop};
+use super::sums::{ForceSums, PrecisePositions, StopCallback, check_stop, displacement, precise_potential};
 pub use super::sums::{never_stop, potential};
 use super::swept::PairSweep;
 use crate::method::{PhysicsFailure, reject_several_ranks};
@@ -15,6 +15,9 @@ use crate::scene::Precision;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::sweep::all_pairs::Arithmetic;
+
+/// Number of bodies from which the direct sums of a step run on threads: below, waking them takes longer.
+const MANY: usize = 64;
 
 /// Derivatives of the acceleration available to a start, including the acceleration itself.
 const ORDERS: usize = 4;
@@ -59,7 +62,10 @@ impl GravityField {
     /// [`PhysicsFailure`] if the bodies cannot be distributed to the number of ranks.
     pub fn new(scene: &NbodyScene, bodies: &PointMasses) -> Result<Self, PhysicsFailure> {
         if !matches!(scene.engine, ForceEngine::Fast | ForceEngine::Auto) {
-            reject_several_ranks("only machine.engine = \"fast\" has bands of rows")?;
+            reject_several_ranks(match scene.scheme.is_adaptive() {
+                true => "integrator.kind = \"ias15\" sums pair by pair, without bands of rows",
+                false => "only machine.engine = \"fast\" has bands of rows",
+            })?;
         }
         let arithmetic = match scene.arithmetic {
             ArithmeticKind::Exact => Arithmetic::Exact,
@@ -126,44 +132,52 @@ impl GravityField {
         StepField { attraction: self, observed, energy: None, stop }
     }
 
-    /// Energy of all pairs.
+    /// Energy of all pairs, at positions that the direct sum takes with their low parts, if they have any.
     ///
     /// # Errors
     /// [`ProgramError`] if the processor lacks the instruction set, or `stop` returns true.
     pub fn potential(
         &mut self,
         position: &StateColumns,
+        low: Option<&StateColumns>,
         stop: StopCallback<'_>,
     ) -> Result<f64, ProgramError> {
         let energy = match &mut self.pairs {
-            PairSummation::Reference => potential(&self.mass[..self.bodies], position, self.softening, stop),
+            PairSummation::Reference => {
+                precise_potential(&self.mass[..self.bodies], (position, low), self.softening, stop)
+            }
             PairSummation::Summed(sums) => sums.sum(position, None, true, stop),
         };
         energy.map(|energy| self.constant * energy)
     }
 
-    fn square(&self, position: &StateColumns, body: usize, other: usize) -> f64 {
-        let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
-        squares.sum::<f64>() + self.softening * self.softening
+    /// Acceleration of a body: the direct sum in the order of the bodies.
+    fn direct_sum(&self, (position, low): PrecisePositions<'_>, body: usize) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for other in (0..self.bodies).filter(|&other| other != body) {
+            let displacement = displacement((position, low), body, other);
+            let squares = displacement.iter().map(|d| d * d);
+            let square = squares.sum::<f64>() + self.softening * self.softening;
+            let pull = self.pull[other] / (square * square.sqrt());
+            (0..3).for_each(|axis| sum[axis] += pull * displacement[axis]);
+        }
+        sum
     }
 
-    /// Direct sum in the order of the bodies.
-    fn direct_sum(
+    /// Direct sums of all bodies, on threads where there are many.
+    fn direct_sums(
         &self,
-        position: &StateColumns,
+        positions: PrecisePositions<'_>,
         into: &mut StateColumns,
         stop: StopCallback<'_>,
     ) -> Result<(), ProgramError> {
-        for body in 0..self.bodies {
-            check_stop(stop)?;
-            let mut sum = [0.0; 3];
-            for other in (0..self.bodies).filter(|&other| other != body) {
-                let square = self.square(position, body, other);
-                let pull = self.pull[other] / (square * square.sqrt());
-                (0..3).for_each(|axis| sum[axis] += pull * (position[axis][other] - position[axis][body]));
-            }
-            (0..3).for_each(|axis| into[axis][body] = sum[axis]);
+        let of = |body: usize| check_stop(stop).map(|()| self.direct_sum(positions, body));
+        let mut put = |body: usize, sum: [f64; 3]| (0..3).for_each(|axis| into[axis][body] = sum[axis]);
+        if self.bodies < MANY {
+            return (0..self.bodies).try_for_each(|body| of(body).map(|sum| put(body, sum)));
         }
+        let sums: Vec<[f64; 3]> = (0..self.bodies).into_par_iter().map(of).collect::<Result<_, _>>()?;
+        sums.into_iter().enumerate().for_each(|(body, sum)| put(body, sum));
         Ok(())
     }
 
@@ -243,8 +257,12 @@ impl StepField<'_> {
     ///
     /// # Errors
     /// As [`GravityField::potential`].
-    pub fn energy(&mut self, position: &StateColumns) -> Result<f64, ProgramError> {
-        self.energy.take().map_or_else(|| self.attraction.potential(position, self.stop), Ok)
+    pub fn energy(
+        &mut self,
+        position: &StateColumns,
+        low: Option<&StateColumns>,
+    ) -> Result<f64, ProgramError> {
+        self.energy.take().map_or_else(|| self.attraction.potential(position, low, self.stop), Ok)
     }
 
     fn acceleration_and(
@@ -257,7 +275,7 @@ impl StepField<'_> {
         attraction.evaluations += 1;
         let GravityField { pairs: PairSummation::Summed(sums), per_mass, constant, .. } = &mut **attraction
         else {
-            return attraction.direct_sum(position, into, stop).map(|()| None);
+            return attraction.direct_sums((position, None), into, stop).map(|()| None);
         };
         let energy = sums.sum(position, None, observed, stop)?;
         sums.over(per_mass, [Some(into), None]);
@@ -277,6 +295,16 @@ impl AccelerationField for StepField<'_> {
     ) -> Result<(), ProgramError> {
         self.energy = self.acceleration_and(position, into, self.observed)?;
         Ok(())
+    }
+
+    fn precise_acceleration(
+        &mut self,
+        position: &StateColumns,
+        low: &StateColumns,
+        into: &mut StateColumns,
+    ) -> Result<(), ProgramError> {
+        self.attraction.evaluations += 1;
+        self.attraction.direct_sums((position, Some(low)), into, self.stop)
     }
 
     fn derivatives(
@@ -381,7 +409,7 @@ mod tests {
             let mut field = GravityField::new(&scene, &all).unwrap();
             let mut into = zeros(all.entries());
             field.for_step(false, &never_stop).acceleration(&all.position, &mut into).unwrap();
-            (into, field.potential(&all.position, &never_stop).unwrap())
+            (into, field.potential(&all.position, None, &never_stop).unwrap())
         };
         let (expected, potential) =
             found(ForceEngine::Reference, Execution::Chained, Precision::F64, ArithmeticKind::Exact);

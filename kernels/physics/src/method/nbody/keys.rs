@@ -8,8 +8,8 @@ use crate::scene::KeyValueKind::{Choice, Number, Rows, Text, Whole};
 use crate::scene::NumberRange::{AtMost, Finite, NonNegative, Positive, UpTo};
 use crate::scene::keys::define_keys;
 use crate::scene::{
-    ARITHMETIC, DURATION, ExclusiveKeys, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT, STEP,
-    STEPPED_RUN, SceneError, SceneValues, TARGETED, Use, Vocabulary, too_many_steps,
+    ARITHMETIC, DURATION, ExclusiveKeys, HEADING, INSTRUCTIONS, KeySet, KeyValue, MistakeKind, OUTPUT,
+    STEPPED_RUN, SceneError, SceneValues, TARGETED, TIME, Use, Vocabulary, too_many_steps,
 };
 use crate::words::Words;
 
@@ -24,6 +24,8 @@ const KEPLER: Use = Some((&GENERATE, &["kepler"]));
 const CLUSTERS: Use = Some((&GENERATE, &["two-clusters"]));
 const LISTED: Use = Some((&GENERATE, &["list"]));
 const DAMPED: Use = Some((&INTEGRATOR, &["damped-euler"]));
+
+const ADAPTIVE: Use = Some((&INTEGRATOR, &["ias15"]));
 
 const PROGRAMS: Use = Some((&ENGINE, &["programs"]));
 const SWEPT: Use = Some((&ENGINE, &["auto", "fast"]));
@@ -66,9 +68,14 @@ define_keys! {
         "Gravitational constant G: two bodies attract each other with G m₁ m₂/d². Masses may be given as G m instead, with a constant of 1.";
 
     INTEGRATOR = "integrator" "kind", Choice(SchemeName::WORDS), "", Is("\"leapfrog\""), ALWAYS,
-        "Integrator: damped-euler is PWP's; euler and euler-with-half are there to show how they fail; leapfrog, yoshida-4, -6 and -8 are symplectic; runge-kutta-4, hermite-4 and gear-6 (started exactly) drift in energy.";
+        "Integrator: damped-euler is PWP's; euler and euler-with-half are there to show how they fail; leapfrog, yoshida-4, -6 and -8 are symplectic; runge-kutta-4, hermite-4 and gear-6 (started exactly) drift in energy; ias15 (order 15) adapts its steps to encounters and conserves energy to rounding.";
     DAMPING = "integrator" "damping", Number(AtMost(1.0)), "", Is("1.0"), DAMPED,
         "Factor of the velocities at every step: a friction −ln(damping)/dt.";
+
+    TOLERANCE = "integrator" "tolerance", Number(AtMost(1e-3)), "", Is("1e-9"), ADAPTIVE,
+        "Tolerance of a step: largest ratio of the last coefficient of the accelerations in the step to the acceleration. At 1e-9 the error of a step is below rounding.";
+    STEP_LENGTH = "integrator" "dt", Number(Positive), "time", Otherwise("required; with ias15 a thousandth of `run.time`"), ALWAYS,
+        "Time step. With ias15, whose steps adapt, it is the interval in which `run.steps`, rows and frames are counted; no result at a time depends on it.";
 
     ENGINE = "machine" "engine", Choice(ForceEngine::WORDS), "", Is("\"auto\""), ALWAYS,
         "Force engine: fast visits each pair once; programs uses whole-array operations at every cyclic shift; reference is the direct sum, in double precision. auto takes reference for up to a dozen bodies, and fast for more bodies, single precision or estimated roots.";
@@ -85,7 +92,7 @@ static START: &[ExclusiveKeys] =
 pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     keys: KeySet {
         method: "nbody",
-        groups: &[HEADING, OWN, STEP, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, TARGETED, OUTPUT],
+        groups: &[HEADING, OWN, ARITHMETIC, INSTRUCTIONS, STEPPED_RUN, TARGETED, OUTPUT],
         rivals: &[START, DURATION],
         advice: &[
             ("integrator.step", "did you mean `integrator.dt`?"),
@@ -110,9 +117,39 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
     renamed: &[],
 };
 
+/// Smallest tolerance: below, rounding of the accelerations decides the step.
+const FINEST: f64 = 1e-12;
+
+/// Error for a scene without a step, or without the time from which steps that adapt take their interval of output.
+fn missing_step(values: &SceneValues) -> Option<SceneError> {
+    let is_adaptive = values.choice(&INTEGRATOR).is_some_and(|kind| kind == SchemeName::Ias15.word());
+    if let Some(tolerance) = values.number(&TOLERANCE).filter(|tolerance| is_adaptive && *tolerance < FINEST)
+    {
+        let message =
+            format!("`{}` = {tolerance:e} is below the rounding of accelerations", TOLERANCE.path());
+        let error = values.spot(&TOLERANCE).error(MistakeKind::Range, message);
+        return Some(error.expecting(format!("{FINEST:e} to 1e-3; 1e-9 is accurate to rounding")));
+    }
+    if values.is_given(&STEP_LENGTH)
+        || values.is_faulty(&STEP_LENGTH)
+        || is_adaptive && values.is_given(&TIME)
+    {
+        return None;
+    }
+    let error = values.spot(&STEP_LENGTH).error(MistakeKind::Missing, "`integrator.dt` is missing");
+    Some(match is_adaptive {
+        true => {
+            error.expecting("run.time, or the interval integrator.dt in which run.steps are counted (time)")
+        }
+        false => error
+            .expecting(STEP_LENGTH.expected())
+            .advising("or set integrator.kind = \"ias15\", which needs none"),
+    })
+}
+
 /// Checks the keys that depend on each other.
 fn own_rules(values: &SceneValues) -> Vec<SceneError> {
-    let mut errors = vec![];
+    let mut errors: Vec<SceneError> = missing_step(values).into_iter().collect();
     let of_boxes = FORMATS.iter().zip(OUTPUT).filter(|(format, _)| format.needs_box);
     for key in of_boxes.map(|(_, key)| key) {
         if values.value(key) == Some(KeyValue::Switch(true)) {

@@ -7,6 +7,7 @@ mod choice;
 mod conserved;
 mod encounter;
 mod entry;
+mod failures;
 pub mod field;
 mod imported;
 pub mod keys;
@@ -32,5 +33,7 @@ pub use entry::ENTRY;
 
 use crate::method::FailureKind;
 
+/// Bodies so near to each other that the clock cannot resolve their motion.
+pub(crate) const COLLISION: FailureKind = FailureKind::new("collision");
 /// Bodies that were bound have become unbound.
 pub(crate) const UNBOUND: FailureKind = FailureKind::new("unbound");

@@ -66,8 +66,14 @@ impl EnergyMonitor {
         Some(format!("bodies {first} and {second} were the nearest, {distance} apart at step {steps}"))
     }
 
-    /// Returns the warning at the end, with the energy and step `now`.
-    pub(super) fn warning(&self, now: (f64, u64), dt: f64, id: impl Fn(usize) -> u32) -> Option<RunWarning> {
+    /// Returns the warning at the end, with the energy and step `now`, and a remedy.
+    pub(super) fn warning(
+        &self,
+        now: (f64, u64),
+        dt: f64,
+        remedy: &str,
+        id: impl Fn(usize) -> u32,
+    ) -> Option<RunWarning> {
         let (energy, steps) = self.worst_with(now);
         let is_small = self.start.abs() < self.kinetic;
         let of = if is_small { "of the kinetic energy at the start" } else { "of its value at the start" };
@@ -82,8 +88,7 @@ impl EnergyMonitor {
         };
         let nearest = self.nearest_in_words(id).map_or(String::new(), |words| format!("; {words}"));
         let message = format!(
-            "the energy {off} at step {steps}, time {}, the largest error found{nearest}: lower integrator.dt, choose an \
-             integrator of higher order, or set law.softening",
+            "the energy {off} at step {steps}, time {}, the largest error found{nearest}: {remedy}",
             significant(steps as f64 * dt, 6)
         );
         Some(RunWarning { check: "energy-balance", value: error, limit: MOST, message })

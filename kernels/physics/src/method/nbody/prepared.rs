@@ -60,7 +60,10 @@ impl CheckedNbody {
             Fact::new("integrator", scene.scheme.word(), "integrator", scene.scheme.word()),
             Fact::words("steps", {
                 let dt = with_symbol(&format!("{:?}", scene.dt), &scene.units, "time");
-                format!("{} of dt = {dt}", scene.run.steps)
+                match scene.scheme.is_adaptive() {
+                    true => format!("adaptive; {} intervals of output of dt = {dt}", scene.run.steps),
+                    false => format!("{} of dt = {dt}", scene.run.steps),
+                }
             }),
         ]
     }
@@ -77,6 +80,7 @@ impl CheckedNbody {
     fn step_limits(&self) -> Vec<StepLimit> {
         let scene = &self.scene;
         match scene.start.kind {
+            _ if scene.scheme.is_adaptive() => vec![],
             StartKind::Kepler => {
                 // At the nearest point the bodies turn as on a circle of that radius. Fourth-order schemes resolve it in ten steps, so
                 // a warning begins there; the energy error judges the run.

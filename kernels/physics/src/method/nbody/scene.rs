@@ -4,7 +4,8 @@ use super::keys::*;
 use super::options::{ArithmeticKind, ForceEngine, StartKind};
 use super::schemes::SchemeName;
 use crate::scene::{
-    Binding, Output, Precision, RunKeys, StartFile, Write, bind_arithmetic, bind_execution, bind_heading,
+    Binding, Output, Precision, RunKeys, StartFile, TIME, Write, bind_arithmetic, bind_execution,
+    bind_heading,
 };
 use stripmine_kernels::{Execution, InstructionSet};
 
@@ -52,7 +53,9 @@ pub struct NbodyScene {
     pub scheme: SchemeName,
     /// Factor by which PWP's integrator multiplies velocities in each step.
     pub damping: f64,
-    /// Time step (time).
+    /// Tolerance of steps that adapt.
+    pub tolerance: f64,
+    /// Time step, or the interval of output if steps adapt (time).
     pub dt: f64,
     /// Engine that calculates the forces.
     pub engine: ForceEngine,
@@ -92,6 +95,7 @@ impl Default for NbodyScene {
             gravitational_constant: 1.0,
             scheme: SchemeName::Leapfrog,
             damping: 1.0,
+            tolerance: 1e-9,
             dt: 0.0,
             engine: ForceEngine::Fast,
             execution: Execution::Chained,
@@ -147,6 +151,9 @@ impl NbodyStart {
     }
 }
 
+/// Intervals of output in a run whose scene does not give their length.
+const OUTPUTS: f64 = 1000.0;
+
 /// Gravitational constant of CODATA 2018 (m³/(kg s²)).
 const CODATA: f64 = 6.674_30e-11;
 
@@ -166,7 +173,15 @@ impl NbodyScene {
         if self.scheme == SchemeName::DampedEuler {
             binding.number(&DAMPING, &mut self.damping);
         }
-        binding.number(&crate::scene::DT, &mut self.dt);
+        if self.scheme.is_adaptive() {
+            binding.number(&TOLERANCE, &mut self.tolerance);
+        }
+        binding.number(&STEP_LENGTH, &mut self.dt);
+        if self.dt == 0.0 && binding.reads() {
+            let mut time = None;
+            binding.number_if_any(&TIME, &mut time);
+            self.dt = time.filter(|time| *time > 0.0).map_or(1.0, |time| time / OUTPUTS);
+        }
         binding.choice(&ENGINE, &mut self.engine);
         if self.engine == ForceEngine::Programs {
             bind_execution(binding, &EXECUTION, &mut self.execution);

@@ -7,14 +7,14 @@ use super::encounter::{NearestPair, NearestPairSearch};
 use super::field::GravityField;
 use super::monitor::EnergyMonitor;
 use super::quantities::{NbodyObservation, OBSERVABLES};
-use super::schemes::BodyIntegrator;
+use super::schemes::{AdaptiveSteps, BodyIntegrator, IntegrationError};
 use super::sums::{StopCallback, never_stop};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::Elapsed;
 use crate::method::stepped::{Stepped, SteppedState, Stepwise};
 use crate::method::{
-    Clock, Culprit, FailureKind, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot,
-    StartPurpose, rank_loss_failure,
+    Clock, Culprit, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot, StartPurpose,
+    rank_loss_failure,
 };
 use crate::number::significant;
 use crate::particles::Particles;
@@ -35,9 +35,9 @@ const COLUMNS: [&str; 6] = ["x", "y", "z", "vx", "vy", "vz"];
 
 /// Stepped state of the bodies.
 pub(super) struct SteppedBodies {
-    elapsed: Elapsed,
+    pub(super) elapsed: Elapsed,
     pub(super) bodies: PointMasses,
-    scheme: Box<dyn BodyIntegrator>,
+    pub(super) scheme: Box<dyn BodyIntegrator>,
     /// Mutable while observing, because the pair energy is found with the forces.
     pub(super) field: RefCell<GravityField>,
     particles: Particles,
@@ -45,14 +45,14 @@ pub(super) struct SteppedBodies {
 
 /// State of a run beside its bodies.
 pub(super) struct NbodyRunState {
-    softening: f64,
+    pub(super) softening: f64,
     /// Steps between observed rows, and the last step, which is observed too; none in a measurement.
     rows: Option<[u64; 2]>,
-    watch: EnergyMonitor,
-    encounters: NearestPairSearch,
+    pub(super) watch: EnergyMonitor,
+    pub(super) encounters: NearestPairSearch,
     /// Nearest pair at the last check.
-    last_encounter: Option<NearestPair>,
-    before: SavedStep,
+    pub(super) last_encounter: Option<NearestPair>,
+    pub(super) before: SavedStep,
     /// Cached conserved quantities of the current state.
     seen: RefCell<Option<Result<ConservedQuantities, ProgramError>>>,
 }
@@ -62,10 +62,11 @@ pub(super) type NbodySimulation = Stepped<NbodyRunState>;
 
 /// State before a step of many bodies, which an interrupted step restores.
 #[derive(Default)]
-struct SavedStep {
-    position: StateColumns,
+pub(super) struct SavedStep {
+    pub(super) position: StateColumns,
     velocity: StateColumns,
     carried: Vec<StateColumns>,
+    numbers: Vec<f64>,
     evaluations: u64,
 }
 
@@ -89,7 +90,7 @@ pub(super) fn begin(
     let all = checked.particles.all();
     let bodies = PointMasses::new(all.iter().map(|body| (body.position, body.velocity, body.mass)));
     let mut field = GravityField::new(scene, &bodies)?;
-    let potential = field.potential(&bodies.position, &never_stop)?;
+    let potential = field.potential(&bodies.position, None, &never_stop)?;
     let start = ConservedQuantities::of(&bodies, potential);
     let (mut watch, mut encounters) = (EnergyMonitor::new(&start), NearestPairSearch::default());
     let nearest = encounters.nearest(&bodies.position, bodies.len());
@@ -97,7 +98,7 @@ pub(super) fn begin(
     let moved = SteppedBodies {
         elapsed: Elapsed::of_steps(scene.dt),
         bodies,
-        scheme: scene.scheme.scheme(scene.damping),
+        scheme: scene.scheme.scheme(scene.damping, scene.tolerance),
         field: RefCell::new(field),
         particles: checked.particles.clone(),
     };
@@ -114,13 +115,18 @@ pub(super) fn begin(
 }
 
 impl NbodySimulation {
-    fn is_few(&self) -> bool {
+    pub(super) fn is_few(&self) -> bool {
         self.state.bodies.len() <= FEW
+    }
+
+    /// True if a step may take long, so that it can be interrupted.
+    fn is_long_step(&self) -> bool {
+        !self.is_few() || self.state.scheme.adaptive_steps().is_some()
     }
 
     /// True if a check is due after a number of steps.
     fn is_check_due(&self, steps: u64) -> bool {
-        self.is_few() || steps.is_multiple_of(BETWEEN_LOOKS)
+        self.is_few() || self.state.scheme.adaptive_steps().is_some() || steps.is_multiple_of(BETWEEN_LOOKS)
     }
 
     /// True if a row, or the end, is due after a number of steps.
@@ -133,8 +139,9 @@ impl NbodySimulation {
     /// Conserved quantities of the state, calculated once.
     fn conserved(&self) -> Result<ConservedQuantities, ProgramError> {
         let found = || {
+            let SteppedBodies { bodies, scheme, field, .. } = &self.state;
             let potential =
-                self.state.field.borrow_mut().potential(&self.state.bodies.position, &never_stop)?;
+                field.borrow_mut().potential(&bodies.position, scheme.position_low(), &never_stop)?;
             Ok(ConservedQuantities::of(&self.state.bodies, potential))
         };
         self.method.seen.borrow_mut().get_or_insert_with(found).clone()
@@ -145,11 +152,11 @@ impl NbodySimulation {
         self.conserved().unwrap_or_else(|_| ConservedQuantities::of(&self.state.bodies, f64::NAN))
     }
 
-    fn id(&self, body: usize) -> u32 {
+    pub(super) fn id(&self, body: usize) -> u32 {
         self.state.particles.all()[body].id
     }
 
-    fn culprit(&self, body: usize) -> Culprit {
+    pub(super) fn culprit(&self, body: usize) -> Culprit {
         Culprit {
             called: "body",
             id: self.id(body),
@@ -159,13 +166,15 @@ impl NbodySimulation {
     }
 
     /// Advances the bodies by a step, and calculates the conserved quantities if `observed`.
-    fn attempt(&mut self, observed: bool, stop: StopCallback<'_>) -> Result<StepResult, ProgramError> {
+    fn attempt(&mut self, observed: bool, stop: StopCallback<'_>) -> Result<StepResult, IntegrationError> {
         let mut field = self.state.field.get_mut().for_step(observed, stop);
         self.state.scheme.step(&mut self.state.bodies, self.state.elapsed.dt, &mut field)?;
         let not_finite = self.state.bodies.not_finite();
         let seen = match observed && not_finite.is_none() {
             true => {
-                Some(ConservedQuantities::of(&self.state.bodies, field.energy(&self.state.bodies.position)?))
+                let potential =
+                    field.energy(&self.state.bodies.position, self.state.scheme.position_low())?;
+                Some(ConservedQuantities::of(&self.state.bodies, potential))
             }
             false => None,
         };
@@ -173,102 +182,23 @@ impl NbodySimulation {
     }
 
     fn keep(&mut self) {
-        let SavedStep { position, velocity, carried, evaluations } = &mut self.method.before;
+        let SavedStep { position, velocity, carried, numbers, evaluations } = &mut self.method.before;
         position.clone_from(&self.state.bodies.position);
         velocity.clone_from(&self.state.bodies.velocity);
         let now = self.state.scheme.carried_columns();
         carried.resize_with(now.len(), StateColumns::default);
         carried.iter_mut().zip(now).for_each(|(to, from)| to.clone_from(from));
+        *numbers = self.state.scheme.carried_numbers().iter().map(|(_, number)| *number).collect();
         *evaluations = self.state.field.get_mut().evaluations;
     }
 
     fn restore_saved_step(&mut self) {
-        let SavedStep { position, velocity, carried, evaluations } = &mut self.method.before;
+        let SavedStep { position, velocity, carried, numbers, evaluations } = &mut self.method.before;
         self.state.bodies.position.clone_from(position);
         self.state.bodies.velocity.clone_from(velocity);
         self.state.scheme.take_up(&self.state.bodies, std::mem::take(carried));
+        self.state.scheme.take_up_numbers(numbers);
         self.state.field.get_mut().evaluations = *evaluations;
-    }
-
-    /// Failure of bodies whose state is not finite, with the nearest pair before the step.
-    fn not_finite(&mut self, first: usize, count: usize) -> PhysicsFailure {
-        let before = match self.is_few() {
-            true => self.method.last_encounter,
-            false => self.method.encounters.nearest(&self.method.before.position, self.state.bodies.len()),
-        };
-        let culprit = self.culprit(first);
-        let message = format!(
-            "the positions or velocities of {count} bodies are not finite, first body {}",
-            culprit.id
-        );
-        let met = before.map_or(String::new(), |before| {
-            format!("; one step before, {}", self.encounter_in_words(&before, "were"))
-        });
-        self.of_encounter(FailureKind::NOT_FINITE, message + &met, before).of(count as u64, [culprit])
-    }
-
-    /// Describes a pair of bodies that `are` or `were` near each other.
-    fn encounter_in_words(&self, encounter: &NearestPair, are: &str) -> String {
-        let NearestPair { bodies, distance, place: [x, y, z] } = *encounter;
-        let [first, second] = bodies.map(|body| self.id(body));
-        let place = format!("({}, {}, {})", significant(x, 6), significant(y, 6), significant(z, 6));
-        let apart = match distance {
-            0.0 => "both".to_owned(),
-            distance => format!("{} apart", significant(distance, 3)),
-        };
-        let softened = match self.method.softening {
-            0.0 => "their attraction is not softened".to_owned(),
-            softening => format!("their attraction is softened by {softening}"),
-        };
-        format!("bodies {first} and {second} {are} {apart} at {place}, and {softened}")
-    }
-
-    fn of_encounter(
-        &self,
-        kind: FailureKind,
-        message: String,
-        encounter: Option<NearestPair>,
-    ) -> PhysicsFailure {
-        let remedy = format!(
-            "the time step is too long for this encounter: lower integrator.dt (it is {}), or raise law.softening above {}",
-            self.state.elapsed.dt, self.method.softening
-        );
-        let distance = encounter.map(|it| ("distance", it.distance));
-        PhysicsFailure::new(kind, message, remedy)
-            .at(self.clock())
-            .with(distance.into_iter().collect::<Vec<_>>())
-    }
-
-    /// Checks the conserved quantities against those at the start.
-    fn check_conserved(&self, seen: &ConservedQuantities) -> Result<(), PhysicsFailure> {
-        if !seen.is_finite() {
-            let bodies = &self.state.bodies;
-            let nearest = NearestPairSearch::default().nearest(&bodies.position, bodies.len());
-            let met = nearest
-                .map_or(String::new(), |nearest| format!("; {}", self.encounter_in_words(&nearest, "are")));
-            let message = format!(
-                "the kinetic energy is {} and the potential energy {}{met}",
-                significant(seen.kinetic, 5),
-                significant(seen.potential, 5)
-            );
-            let failure = self.of_encounter(FailureKind::OVERFLOW, message, nearest);
-            let culprits = nearest.map_or(vec![], |it| it.bodies.map(|body| self.culprit(body)).to_vec());
-            return Err(failure.of(culprits.len() as u64, culprits));
-        }
-        let energy = seen.energy();
-        if !self.method.watch.is_unbound(energy) {
-            return Ok(());
-        }
-        let nearest = self.method.watch.nearest_in_words(|body| self.id(body));
-        let message = format!(
-            "the bodies have become unbound: the energy was {} at the start and is {} now{}",
-            significant(self.method.watch.start, 5),
-            significant(energy, 5),
-            nearest.map_or(String::new(), |words| format!("; {words}"))
-        );
-        let remedy = "the integrator loses the orbit: lower integrator.dt, set another integrator.kind, or raise law.softening";
-        let failure = PhysicsFailure::new(super::UNBOUND, message, remedy).at(self.clock());
-        Err(failure.with([("energy", energy), ("energy_at_start", self.method.watch.start)]))
     }
 
     /// Current observation.
@@ -332,18 +262,19 @@ impl Stepwise for NbodyRunState {
     const OBSERVABLES: &'static [MethodObservable<NbodyObservation>] = &OBSERVABLES;
 
     fn step(run: &mut Stepped<Self>, interrupted: &AtomicBool) -> Result<bool, PhysicsFailure> {
-        let (steps, is_few) = (run.state.elapsed.steps + 1, run.is_few());
-        // A step of few bodies is too short to interrupt.
-        let stop = || !is_few && interrupted.load(Ordering::Relaxed);
-        if !is_few {
+        let (steps, is_long) = (run.state.elapsed.steps + 1, run.is_long_step());
+        let stop = || is_long && interrupted.load(Ordering::Relaxed);
+        if is_long {
             run.keep();
         }
         let stepped = match run.attempt(run.is_check_due(steps) || run.is_row(steps), &stop) {
-            Err(ProgramError::Interrupted) => {
+            Err(IntegrationError::Field(ProgramError::Interrupted)) => {
                 run.restore_saved_step();
                 return Ok(false);
             }
-            stepped => stepped?,
+            Err(IntegrationError::Field(failure)) => return Err(failure.into()),
+            Err(IntegrationError::Unresolved { time, step }) => return Err(run.unresolved(time, step)),
+            Ok(stepped) => stepped,
         };
         run.state.elapsed.steps = steps;
         *run.method.seen.get_mut() = stepped.seen.map(Ok);
@@ -351,8 +282,11 @@ impl Stepwise for NbodyRunState {
             return Err(run.not_finite(first, count));
         }
         if run.is_check_due(steps) {
-            run.method.last_encounter =
-                run.method.encounters.nearest(&run.state.bodies.position, run.state.bodies.len());
+            let NbodyRunState { encounters, last_encounter, .. } = &mut run.method;
+            let now = encounters.nearest(&run.state.bodies.position, run.state.bodies.len());
+            let within = run.state.scheme.adaptive_steps().and_then(|steps| steps.nearest);
+            let both = now.into_iter().chain(within);
+            *last_encounter = both.min_by(|a, b| a.distance.total_cmp(&b.distance));
         }
         let Some(seen) = stepped.seen else { return Ok(true) };
         run.check_conserved(&seen)?;
@@ -374,6 +308,9 @@ impl Stepwise for NbodyRunState {
         kept.columns.extend(run.method.watch.columns());
         kept.add_sum("energy", run.method.watch.start);
         kept.add_count(EVALUATIONS, run.state.field.borrow().evaluations);
+        for (name, number) in run.state.scheme.carried_numbers() {
+            kept.add_sum(name, number);
+        }
     }
 
     fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
@@ -394,6 +331,10 @@ impl Stepwise for NbodyRunState {
             carried.push([x?, y?, z?]);
         }
         run.state.scheme.take_up(&run.state.bodies, carried);
+        let names = run.state.scheme.carried_numbers().into_iter();
+        let numbers: Vec<f64> = names.map(|(name, _)| snapshot.sum(name)).collect::<Result<_, _>>()?;
+        run.state.scheme.take_up_numbers(&numbers);
+        run.state.scheme.check_numbers(clock.steps, run.state.elapsed.dt)?;
         run.state.elapsed.steps = clock.steps;
         run.state.field.get_mut().evaluations = evaluations;
         *run.method.seen.get_mut() = None;
@@ -414,27 +355,44 @@ impl Stepwise for NbodyRunState {
             ("order", json!(run.state.scheme.order())),
         ];
         let watched = run.method.watch.entries(run.now(), |body| run.id(body));
-        entries.into_iter().chain(watched).collect()
+        let adaptive = run.state.scheme.adaptive_steps().into_iter().flat_map(adaptive_entries);
+        entries.into_iter().chain(adaptive).chain(watched).collect()
     }
 
     fn warnings(run: &Stepped<Self>) -> Vec<RunWarning> {
         // A scheme with deliberate dissipation does not conserve energy.
         let is_watched = !run.state.scheme.is_dissipative();
-        let warning = is_watched
-            .then(|| run.method.watch.warning(run.now(), run.state.elapsed.dt, |body| run.id(body)));
+        let warning = is_watched.then(|| {
+            run.method
+                .watch
+                .warning(run.now(), run.state.elapsed.dt, run.accuracy_remedy(), |body| run.id(body))
+        });
         warning.flatten().into_iter().collect()
     }
 
     fn in_words(run: &Stepped<Self>) -> String {
         let seen = run.nbody_observation();
+        let steps = run.state.scheme.adaptive_steps().map_or(String::new(), |steps| {
+            format!("; {} adaptive steps, {} rejected", steps.accepted, steps.rejected)
+        });
         format!(
-            "{} bodies; energy error {}, virial ratio {:.3}, momentum {}",
+            "{} bodies; energy error {}, virial ratio {:.3}, momentum {}{steps}",
             run.state.bodies.len(),
             significant(seen.energy_error, 3),
             seen.virial_ratio(),
             significant(seen.momentum(), 2)
         )
     }
+}
+
+/// Entries of adaptive steps in `summary.json`.
+fn adaptive_entries(steps: AdaptiveSteps) -> [(&'static str, Value); 4] {
+    [
+        ("tolerance", json!(steps.tolerance)),
+        ("accepted_steps", json!(steps.accepted)),
+        ("rejected_steps", json!(steps.rejected)),
+        ("shortest_step", json!(steps.shortest)),
+    ]
 }
 
 /// Radius around the centre of mass that contains half of the mass.

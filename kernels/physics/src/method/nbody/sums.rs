@@ -41,6 +41,18 @@ pub(super) fn check_stop(stop: StopCallback<'_>) -> Result<(), ProgramError> {
     if stop() { Err(ProgramError::Interrupted) } else { Ok(()) }
 }
 
+/// Positions, and their low parts below rounding if they have any.
+pub(super) type PrecisePositions<'p> = (&'p StateColumns, Option<&'p StateColumns>);
+
+/// Displacement from a body to another (length).
+pub(super) fn displacement((position, low): PrecisePositions<'_>, body: usize, other: usize) -> [f64; 3] {
+    let rounded = [0, 1, 2].map(|axis| position[axis][other] - position[axis][body]);
+    match low {
+        None => rounded,
+        Some(low) => [0, 1, 2].map(|axis| rounded[axis] + (low[axis][other] - low[axis][body])),
+    }
+}
+
 /// Energy of all pairs by the direct sum, for a gravitational constant of 1.
 ///
 /// # Errors
@@ -51,12 +63,22 @@ pub fn potential(
     softening: f64,
     stop: StopCallback<'_>,
 ) -> Result<f64, ProgramError> {
+    precise_potential(mass, (position, None), softening, stop)
+}
+
+/// Energy of all pairs as [`potential`], at positions with low parts.
+pub(super) fn precise_potential(
+    mass: &[f64],
+    positions: PrecisePositions<'_>,
+    softening: f64,
+    stop: StopCallback<'_>,
+) -> Result<f64, ProgramError> {
     let mut energy = 0.0;
     for body in 0..mass.len() {
         check_stop(stop)?;
         for other in 0..body {
-            let squares = position.iter().map(|column| (column[body] - column[other]).powi(2));
-            energy -= mass[body] * mass[other] / (squares.sum::<f64>() + softening * softening).sqrt();
+            let squares = displacement(positions, body, other).map(|d| d * d);
+            energy -= mass[body] * mass[other] / (squares.iter().sum::<f64>() + softening * softening).sqrt();
         }
     }
     Ok(energy)

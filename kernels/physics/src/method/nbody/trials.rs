@@ -27,6 +27,8 @@ pub(super) static TRIALS: Trials = Trials {
     shadow: None,
     encounter: |_, _| None,
     has_trajectories: true,
+    has_late_encounters: true,
+    adaptive: &["ias15"],
     length: DistanceUnit { unit: "sizes of the system", of: size },
     has_contacts: false,
     observables: &["virial_ratio", "half_mass_radius"],
@@ -53,6 +55,7 @@ pub(super) const AXES: &[SettingAxis] = &[
             "runge-kutta-4" [INTEGRATOR = SchemeName::RungeKutta4],
             "hermite-4" [INTEGRATOR = SchemeName::Hermite4],
             "gear-6" [INTEGRATOR = SchemeName::Gear6],
+            "ias15" [INTEGRATOR = SchemeName::Ias15],
         },
         own: |prepared| setting_of(prepared, "integrator"),
     },
@@ -111,6 +114,7 @@ fn theory(_: &SceneValues, _: &Prepared, integrator: &AxisSetting) -> Option<The
         "yoshida-6" => 6.0,
         "yoshida-8" => 8.0,
         "gear-6" => 5.0,
+        "ias15" => 15.0,
         _ => 4.0,
     };
     Some(TheoreticalOrder { order, why: "the order of the scheme" })

@@ -1,8 +1,9 @@
 //! Leapfrog, and its compositions of higher order (Yoshida 1990). All are symplectic and reversible.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, resize_columns};
+use super::{
+    AccelerationField, BodyIntegrator, IntegrationError, PointMasses, StateColumns, padded, resize_columns,
+};
 use crate::method::nbody::bodies::add;
-use stripmine_kernels::isa::ProgramError;
 
 /// Sequence of leapfrogs (kick, drift, kick), each over a fraction of the step.
 #[derive(Clone, Debug)]
@@ -59,7 +60,7 @@ impl BodyIntegrator for ComposedLeapfrog {
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError> {
+    ) -> Result<(), IntegrationError> {
         resize_columns(&mut self.acceleration, bodies);
         let PointMasses { position, velocity, .. } = bodies;
         if !self.is_known {

@@ -1,8 +1,7 @@
 //! First-order schemes: PWP's damped Euler and the explicit Euler.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, resize_columns};
+use super::{AccelerationField, BodyIntegrator, IntegrationError, PointMasses, StateColumns, resize_columns};
 use crate::method::nbody::bodies::add;
-use stripmine_kernels::isa::ProgramError;
 
 /// PWP's scheme: v ← damping · (v + a dt), r ← r + v dt. With damping 1 it is symplectic: the energy error stays bounded.
 ///
@@ -28,7 +27,7 @@ impl BodyIntegrator for DampedEuler {
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError> {
+    ) -> Result<(), IntegrationError> {
         resize_columns(&mut self.acceleration, bodies);
         field.acceleration(&bodies.position, &mut self.acceleration)?;
         add(&mut bodies.velocity, dt, &self.acceleration);
@@ -69,7 +68,7 @@ impl BodyIntegrator for Euler {
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError> {
+    ) -> Result<(), IntegrationError> {
         resize_columns(&mut self.acceleration, bodies);
         field.acceleration(&bodies.position, &mut self.acceleration)?;
         let PointMasses { position, velocity, .. } = bodies;

@@ -1,6 +1,8 @@
 //! Gear's six-value predictor and corrector for second-order equations.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, resize_columns};
+use super::{
+    AccelerationField, BodyIntegrator, IntegrationError, PointMasses, StateColumns, padded, resize_columns,
+};
 use crate::method::nbody::bodies::{add, zeros};
 use stripmine_kernels::isa::ProgramError;
 
@@ -44,7 +46,7 @@ impl BodyIntegrator for SixValueGear {
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError> {
+    ) -> Result<(), IntegrationError> {
         resize_columns(&mut self.acceleration, bodies);
         if !self.is_known {
             self.start(bodies, dt, field)?;

@@ -1,8 +1,9 @@
 //! Fourth-order Hermite scheme with jerk: predict, evaluate, correct (Makino and Aarseth 1992).
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, padded, resize_columns};
+use super::{
+    AccelerationField, BodyIntegrator, IntegrationError, PointMasses, StateColumns, padded, resize_columns,
+};
 use crate::method::nbody::bodies::add;
-use stripmine_kernels::isa::ProgramError;
 
 /// Hermite scheme: one evaluation of acceleration and jerk per step, at the predicted positions.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +23,7 @@ impl BodyIntegrator for Hermite {
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError> {
+    ) -> Result<(), IntegrationError> {
         self.begin.iter_mut().chain(&mut self.end).for_each(|columns| resize_columns(columns, bodies));
         if !self.is_known {
             field.derivatives(&bodies.position, &bodies.velocity, &mut self.begin)?;

@@ -4,9 +4,11 @@ mod composed;
 mod euler;
 mod gear;
 mod hermite;
+mod ias15;
 mod runge_kutta;
 
 use super::bodies::{PointMasses, StateColumns};
+use super::encounter::NearestPair;
 use crate::words::define_words;
 use stripmine_kernels::isa::ProgramError;
 
@@ -14,6 +16,7 @@ pub(crate) use composed::ComposedLeapfrog;
 pub(crate) use euler::{DampedEuler, Euler};
 pub(crate) use gear::SixValueGear;
 pub(crate) use hermite::Hermite;
+pub(crate) use ias15::Ias15;
 pub(crate) use runge_kutta::RungeKutta;
 
 /// Force field as schemes use it.
@@ -36,6 +39,17 @@ pub trait AccelerationField {
         self.acceleration(position, into)
     }
 
+    /// Calculates the accelerations at positions with low parts below their rounding.
+    ///
+    /// # Errors
+    /// As [`AccelerationField::acceleration`].
+    fn precise_acceleration(
+        &mut self,
+        position: &StateColumns,
+        low: &StateColumns,
+        into: &mut StateColumns,
+    ) -> Result<(), ProgramError>;
+
     /// Calculates the accelerations and their time derivatives, one per entry of `orders`, the acceleration first.
     ///
     /// # Errors
@@ -48,18 +62,51 @@ pub trait AccelerationField {
     ) -> Result<(), ProgramError>;
 }
 
+/// Reason why a step was not made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IntegrationError {
+    /// The field failed.
+    #[error(transparent)]
+    Field(#[from] ProgramError),
+    /// The tolerance needs a step that the clock cannot resolve.
+    #[error(
+        "at time {time} the tolerance needs a step below {step}, which is less than the rounding of the time"
+    )]
+    Unresolved {
+        /// Time at the beginning of the step (time).
+        time: f64,
+        /// Step (time).
+        step: f64,
+    },
+}
+
+/// Steps of an integrator whose steps adapt.
+#[derive(Clone, Copy, Debug)]
+pub struct AdaptiveSteps {
+    /// Accepted steps since the start.
+    pub(crate) accepted: u64,
+    /// Rejected steps since the start.
+    pub(crate) rejected: u64,
+    /// Length of the shortest accepted step (time).
+    pub(crate) shortest: f64,
+    /// Tolerance of a step.
+    pub(crate) tolerance: f64,
+    /// Nearest pair at the ends of steps in the last output interval.
+    pub(in crate::method::nbody) nearest: Option<NearestPair>,
+}
+
 /// Integrator of the equations of motion.
 pub trait BodyIntegrator: Send {
     /// Advances the bodies by `dt` (time).
     ///
     /// # Errors
-    /// [`ProgramError`] of the field; bodies and scheme are then left within the step.
+    /// [`IntegrationError`] of the field or of a step that cannot be resolved; bodies and scheme are then left within the step.
     fn step(
         &mut self,
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError>;
+    ) -> Result<(), IntegrationError>;
 
     /// Order of convergence: with n times as many steps the error at a fixed time is about n^order smaller.
     fn order(&self) -> u32;
@@ -76,6 +123,32 @@ pub trait BodyIntegrator: Send {
 
     /// Restores the values of [`carried_columns`](Self::carried_columns), without padding; the bodies are already restored.
     fn take_up(&mut self, bodies: &PointMasses, carried: Vec<StateColumns>);
+
+    /// Numbers carried between steps, by name.
+    fn carried_numbers(&self) -> Vec<(&'static str, f64)> {
+        vec![]
+    }
+
+    /// Restores the numbers of [`carried_numbers`](Self::carried_numbers), in their order.
+    fn take_up_numbers(&mut self, _numbers: &[f64]) {}
+
+    /// Checks that the present numbers are those of a state after some intervals of `dt` (time).
+    ///
+    /// # Errors
+    /// A message if they are not.
+    fn check_numbers(&self, _intervals: u64, _dt: f64) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Low parts of the positions of the bodies, below their rounding; none if the scheme has none.
+    fn position_low(&self) -> Option<&StateColumns> {
+        None
+    }
+
+    /// Steps inside the intervals of `dt`; none if a step is `dt`.
+    fn adaptive_steps(&self) -> Option<AdaptiveSteps> {
+        None
+    }
 
     /// True if the scheme dissipates energy on purpose.
     fn is_dissipative(&self) -> bool {
@@ -106,12 +179,14 @@ define_words! {
         Hermite4 = "hermite-4",
         /// Gear's six-value predictor and corrector, started exactly.
         Gear6 = "gear-6",
+        /// Rein and Spiegel's integrator of order 15, whose steps adapt.
+        Ias15 = "ias15",
     }
 }
 
 impl SchemeName {
-    /// Creates the scheme; `damping` is the factor of the velocities at every step of PWP's scheme.
-    pub fn scheme(self, damping: f64) -> Box<dyn BodyIntegrator> {
+    /// Creates the scheme; `damping` is the factor of the velocities at every step of PWP's scheme, `tolerance` that of steps that adapt.
+    pub fn scheme(self, damping: f64, tolerance: f64) -> Box<dyn BodyIntegrator> {
         match self {
             SchemeName::DampedEuler => Box::new(DampedEuler::new(damping)),
             SchemeName::Euler => Box::new(Euler::new(0.0)),
@@ -123,11 +198,17 @@ impl SchemeName {
             SchemeName::RungeKutta4 => Box::new(RungeKutta::default()),
             SchemeName::Hermite4 => Box::new(Hermite::default()),
             SchemeName::Gear6 => Box::new(SixValueGear::default()),
+            SchemeName::Ias15 => Box::new(Ias15::new(tolerance)),
         }
     }
 }
 
 impl SchemeName {
+    /// True if steps adapt, and `dt` is an interval of output.
+    pub fn is_adaptive(self) -> bool {
+        self == SchemeName::Ias15
+    }
+
     /// Numbers of three-axis quantities per body that a scheme stores, and that it carries between steps.
     pub fn stored_quantities(self) -> [usize; 2] {
         match self {
@@ -139,6 +220,7 @@ impl SchemeName {
             SchemeName::Hermite4 => [6, 2],
             // Includes the Taylor series of its start.
             SchemeName::Gear6 => [12, 4],
+            SchemeName::Ias15 => [44, 20],
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Classical fourth-order Runge–Kutta scheme. Its energy drifts.
 
-use super::{AccelerationField, BodyIntegrator, PointMasses, StateColumns, resize_columns};
+use super::{AccelerationField, BodyIntegrator, IntegrationError, PointMasses, StateColumns, resize_columns};
 use crate::method::nbody::bodies::add;
-use stripmine_kernels::isa::ProgramError;
 
 /// Runge–Kutta scheme: four evaluations per step, no carried values.
 #[derive(Clone, Debug, Default)]
@@ -18,7 +17,7 @@ impl BodyIntegrator for RungeKutta {
         bodies: &mut PointMasses,
         dt: f64,
         field: &mut dyn AccelerationField,
-    ) -> Result<(), ProgramError> {
+    ) -> Result<(), IntegrationError> {
         self.stages.iter_mut().for_each(|stage| resize_columns(stage, bodies));
         let PointMasses { position, velocity, .. } = bodies;
         // Stage velocities are v + c dt a of the previous stage, so positions use a of the stage before that.
