@@ -35,8 +35,10 @@ COLOURED = """canvas => {
 # that of the page, no text may be cut off, and every marker it refers to must be defined.
 LACKING = """svg => {
     const [box, ink] = [svg.getBoundingClientRect(), getComputedStyle(svg).fill];
-    const ground = getComputedStyle(svg.querySelector(":scope > rect")).fill;
     if (box.width < 100 || box.height < 50 || !svg.checkVisibility()) return "is not visible";
+    const reused = svg.querySelector(":scope > use");
+    if (reused) return document.querySelector(".picture > svg" + reused.getAttribute("href")) ? "" : "shows a missing picture";
+    const ground = getComputedStyle(svg.querySelector(":scope > rect")).fill;
     const light = colour => colour.match(/\\d+/g).slice(0, 3).map(Number).reduce((sum, part) => sum + part) / 765;
     if (Math.abs(light(ink) - light(ground)) < 0.7) return "has too little contrast";
     if (Math.abs(light(ground) - light(getComputedStyle(document.body).backgroundColor)) > 0.1) return "has another background than the page";
@@ -97,7 +99,7 @@ def open_page(browser, address, width, complaints, **options):
 
 
 def name_of(picture):
-    return picture.evaluate("picture => picture.closest('figure').id")
+    return picture.evaluate("picture => picture.closest('figure')?.id ?? picture.getAttribute('aria-label')")
 
 
 def shown(page):

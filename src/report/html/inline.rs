@@ -48,7 +48,7 @@ impl Inline {
     pub(crate) fn element(&self, id: &str, described_by: &str, is_read: bool) -> Markup {
         let width: f64 = self.size.split(' ').nth(2).and_then(|width| width.parse().ok()).unwrap_or(0.0);
         html! {
-            svg id=(id) class=(if width >= WIDE { "drawn wide" } else { "drawn" }) viewBox=(self.size) width=(width) role="img" aria-labelledby=(described_by) tabindex=[is_read.then_some(0)] {
+            svg id=(id) class=(if width >= WIDE { "drawn wide" } else { "drawn" }) viewBox=(self.size) width=(width) role="img" aria-labelledby=(described_by) tabindex=[(is_read || width >= WIDE).then_some(0)] {
                 (PreEscaped(&self.body))
             }
         }

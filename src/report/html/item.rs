@@ -83,7 +83,7 @@ fn claims(section: &Section) -> Markup {
     let verdict = |words: &str| ClaimVerdict::ALL.into_iter().find(|verdict| verdict.words() == words);
     html! {
         @if !section.claims.is_empty() {
-            div.scroll tabindex="0" role="region" aria-label="Claims" {
+            div.scroll tabindex="0" role="group" aria-label="Claims" {
                 table.data.claims {
                     thead {
                         tr {
@@ -167,11 +167,11 @@ fn film_figure(section: &Section, shown: &Film) -> Markup {
 /// Maximum rows of a table on the page; all rows are in its file.
 const ROWS: usize = 10;
 
-/// Table in a box that scrolls if the table is wider than the page. A long table is cut and its file is linked.
+/// Table in a box that scrolls if the table is wider than the page: a group, since landmarks of one page need different names. A long table is cut and its file is linked.
 fn table(table: &FormattedTable, folder: &str) -> Markup {
     let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(TableCell::is_number));
     html! {
-        div.scroll tabindex="0" role="region" aria-label=(table.title) {
+        div.scroll tabindex="0" role="group" aria-label=(table.title) {
             table.data {
                 caption { (table.title) }
                 thead {
