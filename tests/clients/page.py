@@ -164,7 +164,7 @@ def check_film(page, picture):
 def check_pictures(page):
     """Prints a line for every interactive picture and returns the number of failures."""
     failures = 0
-    for kind, selector in (("chart", ".picture > svg[tabindex]"), ("film", ".film")):
+    for kind, selector in (("chart", ".picture > svg[tabindex]:has([data-x])"), ("film", ".film")):
         for picture in page.query_selector_all(selector):
             try:
                 if kind == "film":
