@@ -1,6 +1,6 @@
 //! Means of two configurations with their errors, and their difference over its error.
 
-use crate::cli::display::{UnitSystem, mean_or_reason, reasons};
+use crate::cli::display::{mean_or_reason, reasons};
 use crate::report::{FormattedTable, FrameBuilder, TableCell};
 use serde::Serialize;
 use stripmine_physics::averages::{Average, AverageOutcome, RunAverages};
@@ -44,12 +44,11 @@ fn difference_with_error([one, other]: [[f64; 2]; 2]) -> [f64; 2] {
 }
 
 /// Table of the means, one line for each quantity.
-pub(super) fn means_table(means: &[ComparedMean], units: &UnitSystem) -> FormattedTable {
+pub(super) fn means_table(means: &[ComparedMean]) -> FormattedTable {
     FrameBuilder::of(means)
         .text("quantity", |it| it.first.quantity)
         .text("first ± 95 %", |it| mean_or_reason(&it.first))
         .text("second ± 95 %", |it| mean_or_reason(&it.second))
-        .text("unit", |it| units.symbol(&it.first.unit))
         .cell("σ", |it| it.sigmas.map_or(TableCell::Nothing, |sigmas| TableCell::Number(sigmas, 1)))
         .table("means", "Means of both configurations")
         .notes(reasons(means.iter().flat_map(|it| [&it.first, &it.second])))

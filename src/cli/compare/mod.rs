@@ -2,7 +2,6 @@
 
 mod means;
 
-use super::display::UnitSystem;
 use crate::console::{CommandFailure, Common, print, print_json};
 use crate::report::FrameBuilder;
 use crate::report::terminal;
@@ -137,8 +136,7 @@ impl CompareVerb {
         if comparison.same_bits {
             return Ok(());
         }
-        let units = UnitSystem::of(prepared.scene.parse().ok().as_ref());
-        print(&format!("\n{}", terminal::render(&means_table(&comparison.means, &units))))
+        print(&format!("\n{}", terminal::render(&means_table(&comparison.means))))
     }
 }
 

@@ -237,6 +237,6 @@ fn programs(
         let comment = if target.is_some() { '#' } else { ';' };
         format!("{comment} {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
     };
-    let note = note.map_or(String::new(), |note| format!("; {note}\n"));
+    let note = note.map_or(String::new(), |note| format!("; {}\n", note.replace("; ", "\n; ")));
     print(&(note + &listings.iter().map(text).collect::<String>()))
 }

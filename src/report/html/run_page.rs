@@ -2,6 +2,7 @@
 
 use super::inline::Inline;
 use super::item::{data_table, heading};
+use super::words::prose;
 use super::{SCRIPTS, compact_script, dark_picture_rules, film, head};
 use crate::report::FormattedTable;
 use crate::report::figure::{Figure, data_file};
@@ -50,7 +51,10 @@ pub(crate) fn run_page(page: &RunPage<'_>) -> String {
                 }
                 main {
                     h1 { (title) }
-                    section #numbers { (data_table(numbers, usize::MAX)) }
+                    section #numbers {
+                        (data_table(numbers, usize::MAX))
+                        @for note in &numbers.notes { p.note { (note) } }
+                    }
                     @match film {
                         Ok(shown) => section #film {
                             figure {
@@ -67,7 +71,7 @@ pub(crate) fn run_page(page: &RunPage<'_>) -> String {
                                     (picture.element(&format!("{file}-picture"), &format!("{file}-caption"), data_file(figure).is_some()))
                                 }
                                 figcaption id={ (file) "-caption" } {
-                                    (heading(&figure.title)) " " (figure.caption) " "
+                                    (heading(&figure.title)) " " (prose(&figure.caption)) " "
                                     a href={ (file) ".svg" } { "SVG" } ", " a href={ (file) ".png" } { "PNG" } "."
                                 }
                             }
