@@ -30,6 +30,45 @@ fn plots_appear_in_the_terminal() {
     assert_eq!(stripmine(&["plot", folder.path().join("none").to_str().unwrap()]).status.code(), Some(5));
 }
 
+/// The page has every picture that is written beside it, the film, the numbers and the scene, and loads nothing.
+#[test]
+fn a_page_holds_all_pictures_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let [run, plots] = ["run", "plots"].map(|name| folder.path().join(name));
+    let (run, out) = (run.to_str().unwrap(), plots.to_str().unwrap());
+    let sets =
+        ["--set", "run.steps=4000", "--set", "run.thermo_every=100", "--set", "run.snapshot_every=1000"];
+    let begun = stripmine(&[&["run", "two-discs", "--quiet", "--out", run][..], &sets].concat());
+    assert!(begun.status.success());
+    assert!(stripmine(&["plot", run, "--out", out]).status.success());
+    let page = fs::read_to_string(plots.join("index.html")).unwrap();
+    let files = fs::read_dir(&plots).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
+    let pictures: Vec<String> =
+        files.filter_map(|name| Some(name.strip_suffix(".svg")?.to_owned())).collect();
+    assert!(pictures.len() > 3, "{pictures:?}");
+    for name in &pictures {
+        assert!(page.contains(&format!("<svg id=\"{name}-picture\"")), "{name}");
+        assert!(page.contains(&format!("href=\"#{name}\"")), "{name}");
+    }
+    assert_eq!(page.matches("<svg id=").count(), pictures.len());
+    // 5 frames: at the start and after every 1000 of 4000 steps.
+    let times = page.split_once("\"times\":[").unwrap().1.split_once(']').unwrap().0;
+    assert_eq!(times.split(',').count(), 5, "{times}");
+    for expected in ["<td class=\"words\">kinetic</td>", "[particles]", "default-src 'none'", "@media print"]
+    {
+        assert!(page.contains(expected), "{expected}");
+    }
+    let inner = page.replace("url(#", "");
+    for loading in ["src=", "@import", "url(", "http://", "https://", "fetch("] {
+        assert!(!inner.contains(loading), "{loading}");
+    }
+    // Without a trajectory the page says so.
+    fs::remove_file(format!("{run}/trajectory.xyz")).unwrap();
+    assert!(stripmine(&["plot", run, "--out", out, "--quiet"]).status.success());
+    let page = fs::read_to_string(plots.join("index.html")).unwrap();
+    assert!(page.contains("No film: ") && !page.contains("class=\"film\""), "{page}");
+}
+
 /// Files of a run may have been edited: any contents give pictures or an exit code, never a panic.
 #[test]
 fn edited_runs_are_drawn_or_refused() {

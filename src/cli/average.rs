@@ -1,10 +1,10 @@
 //! `stripmine average`: mean and error of every quantity, over one run or several.
 
-use super::display::{UnitSystem, decimals, scene_of};
+use super::display::{UnitSystem, decimals, mean_or_reason, reasons, scene_of};
 use super::run::seeds::SEEDS;
 use super::run_folder;
 use super::scan::{KeyTable, SCAN, TableKey, TablePoint, check_names, main_quantities, unit_of};
-use crate::console::{CommandFailure, Common, print, print_json, warn};
+use crate::console::{CommandFailure, Common, print, print_json, print_text, warn};
 use crate::frame::{ResultFrame, csv};
 use crate::report::{FormattedTable, FrameBuilder, TableCell, terminal};
 use clap::Args;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::io::owned_folder::{FolderKind, names_in};
 use stripmine_physics::method::{Methods, method};
-use stripmine_physics::number::{count_with_noun, significant, with_error_bar};
+use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::run::{
     FinishedError, FinishedRun, FunctionPoint, Number, ScenePoint, ScenePoints, StructureFunction,
     averages_of, function_of, functions_of, points_of,
@@ -88,7 +88,14 @@ impl AverageVerb {
         if functions.is_empty() {
             return Ok(());
         }
-        print(&format!("\n{}", terminal::render(&structure_table(&functions, &units))))
+        let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
+        let more = format!("--structure NAME prints a whole function: {}.", names.join(", "));
+        match functions.iter().all(|function| function.headlines.is_empty()) {
+            true => print_text(&format!("\nStructure: no numbers. {more}\n")),
+            false => {
+                print(&format!("\n{}", terminal::render(&structure_table(&functions, &units).note(more))))
+            }
+        }
     }
 }
 
@@ -182,73 +189,39 @@ fn structure_table(functions: &[StructureFunction], units: &UnitSystem) -> Forma
         function.headlines.iter().map(|number| (function.name, number.clone())).collect()
     };
     let headlines: Vec<(&str, Number)> = functions.iter().flat_map(of).collect();
-    let names: Vec<&str> = functions.iter().map(|function| function.name).collect();
     FrameBuilder::of(&headlines)
         .text("structure", |(name, _)| *name)
         .text("number", |(_, number)| number.name)
-        .cell("mean", |(_, number)| TableCell::Number(number.mean.value, decimals_of_mean(number.mean.value, number.mean.bar)))
+        .cell("mean", |(_, number)| {
+            TableCell::Number(number.mean.value, decimals_of_mean(number.mean.value, number.mean.bar))
+        })
         .cell("± 95 %", |(_, number)| TableCell::Number(number.mean.bar, decimals(number.mean.bar, 2)))
         .text("unit", |(_, number)| units.symbol(number.unit))
         .table("structure", "Structure".to_owned())
-        .note(format!(
-            "± 95 %: from blocks of one run, or from the scatter between runs (Student's t). --structure NAME prints a whole function: {}.",
-            names.join(", ")
-        ))
+        .note("± 95 %: from blocks of one run, or from the scatter between runs (Student's t).")
 }
 
-/// Table of the means for the terminal. Quantities without a mean are listed below it.
+/// Table of the means for the terminal, one line for each quantity.
 fn means_table(averages: &RunAverages) -> FormattedTable {
-    let known: Vec<(&Average, &Estimate)> = averages
-        .quantities
-        .iter()
-        .filter_map(|it| {
-            if let AverageOutcome::Mean(estimate) = &it.outcome { Some((it, estimate)) } else { None }
+    let estimate = |it: &&Average| match it.outcome {
+        AverageOutcome::Mean(estimate) => Some(estimate),
+        _ => None,
+    };
+    let runs = count_with_noun(averages.runs, "run", "runs");
+    FrameBuilder::of(&averages.quantities)
+        .text("quantity", |it| it.quantity)
+        .text("mean ± 95 %", |it| mean_or_reason(it))
+        .text("unit", |it| it.unit.clone())
+        .cell("from", move |it| {
+            let from = estimate(it).map(|it| it.equilibrated_at);
+            from.map_or(TableCell::Nothing, |from| TableCell::Number(from, decimals(from, 3)))
         })
-        .collect();
-    let listed = |heading: &str, words: fn(&Average) -> Option<String>| -> Option<String> {
-        let names: Vec<String> = averages
-            .quantities
-            .iter()
-            .filter_map(|it| Some(format!("{}{}", it.quantity, words(it)?)))
-            .collect();
-        (!names.is_empty()).then(|| format!("{heading}: {}.", names.join(", ")))
-    };
-    let notes = [
-        listed("Run too short (time needed)", |it| match &it.outcome {
-            AverageOutcome::TooShort { enough_at, .. } => Some(format!(" ({})", significant(*enough_at, 2))),
-            _ => None,
-        }),
-        listed("Still changing", |it| match &it.outcome {
-            AverageOutcome::Changing { first, last } => {
-                Some(format!(" (from {} to {})", significant(*first, 3), significant(*last, 3)))
-            }
-            _ => None,
-        }),
-        listed("Largest deviation from the first value", |it| match &it.outcome {
-            AverageOutcome::Kept { farthest, .. } => Some(format!(" {}", significant(*farthest, 2))),
-            _ => None,
-        }),
-        listed("Constant", |it| match &it.outcome {
-            AverageOutcome::Constant { mean } => Some(format!(" {}", significant(*mean, 6))),
-            _ => None,
-        }),
-        listed("Undefined in some rows", |it| {
-            matches!(it.outcome, AverageOutcome::Undefined).then(String::new)
-        }),
-    ];
-    let name = |it: &Average| match it.of {
-        "rate" => format!("rate of {}", it.quantity),
-        _ => it.quantity.to_owned(),
-    };
-    FrameBuilder::of(&known)
-        .text("quantity", |(it, _)| name(it))
-        .text("mean ± 95 %", |(_, it)| with_error_bar(it.mean, it.bar))
-        .text("unit", |(it, _)| it.unit.clone())
-        .cell("from time", |(_, it)| TableCell::Number(it.equilibrated_at, decimals(it.equilibrated_at, 3)))
-        .cell("samples", |(_, it)| TableCell::Count(it.independent_samples as u64))
-        .table("averages", format!("Means of {}, {} rows", count_with_noun(averages.runs, "run", "runs"), averages.rows))
-        .notes(notes.into_iter().flatten())
-        .note("Samples are independent; from time: end of the transient. --csv has standard errors and correlation times.")
+        .cell("samples", move |it| {
+            estimate(it).map_or(TableCell::Nothing, |it| TableCell::Count(it.independent_samples as u64))
+        })
+        .table("averages", format!("Means of {runs}, {} rows", averages.rows))
+        .notes(reasons(&averages.quantities).into_iter().map(str::to_owned))
+        .note("From: end of the transient. Samples are independent. --csv has standard errors and correlation times.")
 }
 
 /// Full table of the averages, a row for each quantity.

@@ -3,7 +3,9 @@
 use super::display::decimals;
 use super::processes;
 use super::run::{MOST_RANKS, check_total_threads};
-use crate::console::{CommandFailure, Common, clear_progress, count, print, print_json, progress};
+use crate::console::{
+    CommandFailure, Common, clear_progress, count, print, print_json, print_text, progress,
+};
 use crate::provenance::built;
 use crate::report::{FormattedTable, FrameBuilder, TableCell, terminal};
 use crate::study::scaling::{self, Scaling, ThreadResult, scaling};
@@ -195,11 +197,7 @@ impl BenchVerb {
         let result = ranks::with_backend(crew, || throughput(self.measurement(entry, bench, given)?, show));
         clear_progress();
         let result = result.map_err(|error| measurement_failure(error, given))?;
-        if common.json {
-            print_json(&result)
-        } else {
-            print(&(terminal::wrap_message(&throughput_text(&result)) + "\n"))
-        }
+        if common.json { print_json(&result) } else { print_text(&throughput_text(&result)) }
     }
 
     fn measurement(

@@ -3,7 +3,7 @@
 use super::explain::{parse_target_error, plan_failure};
 use super::processes;
 use crate::console::{
-    CommandFailure, Common, clear_progress, print, print_json, print_message, progress, warn,
+    CommandFailure, Common, clear_progress, print_json, print_message, print_prose, progress, warn,
 };
 use crate::model::machines;
 use crate::provenance::{Provenance, built};
@@ -261,7 +261,7 @@ fn write_results(
     if common.json {
         return print_json(&made.json());
     }
-    print(&(section.paragraphs().collect::<Vec<_>>().join("\n\n") + "\n"))
+    print_prose(&section.paragraphs().collect::<Vec<_>>().join("\n\n"))
 }
 
 /// Destination of the results of a study.

@@ -1,9 +1,11 @@
 //! Numbers and units as the terminal and the pictures show them.
 
 use std::path::Path;
-use stripmine_physics::averages::RunAverages;
+use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::io::regular_file;
+use stripmine_physics::number::{significant, with_error_bar};
 use stripmine_physics::quoted::quoted;
+use stripmine_physics::run::Number;
 use stripmine_physics::units;
 
 /// Limit of the size of a scene file (bytes).
@@ -15,10 +17,65 @@ pub(super) fn decimals(value: f64, digits: i32) -> usize {
     if magnitude.is_finite() { (digits - 1 - magnitude as i32).max(0) as usize } else { 0 }
 }
 
+/// Mean of a quantity with its error, `rate` before that of a counter; or the reason in a word or two why there is none.
+pub(super) fn mean_or_reason(average: &Average) -> String {
+    let rate = if average.of == "rate" { "rate " } else { "" };
+    match &average.outcome {
+        AverageOutcome::Mean(Estimate { mean, bar, .. }) => format!("{rate}{}", with_error_bar(*mean, *bar)),
+        AverageOutcome::Constant { mean } => format!("{rate}always {}", significant(*mean, 6)),
+        AverageOutcome::TooShort { enough_at, .. } => format!("needs time {}", significant(*enough_at, 2)),
+        AverageOutcome::Changing { .. } => "changing".to_owned(),
+        AverageOutcome::Undefined => "undefined".to_owned(),
+        AverageOutcome::Kept { farthest, .. } => format!("kept within {}", significant(*farthest, 2)),
+    }
+}
+
+/// Explanations of the reasons that [`mean_or_reason`] gives for some quantities.
+pub(super) fn reasons<'a>(averages: impl IntoIterator<Item = &'a Average>) -> Vec<&'static str> {
+    let mut found: Vec<&str> = averages
+        .into_iter()
+        .filter_map(|average| match average.outcome {
+            AverageOutcome::TooShort { .. } => Some("needs time T: the run is too short for a mean."),
+            AverageOutcome::Changing { .. } => Some("changing: not stationary at the end of the run."),
+            AverageOutcome::Undefined => Some("undefined: NaN in some rows."),
+            AverageOutcome::Kept { .. } => Some("kept within X: largest deviation from the first value."),
+            AverageOutcome::Mean(_) | AverageOutcome::Constant { .. } => None,
+        })
+        .collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// Lines of the numbers that summarise structure functions, with their 95 % confidence intervals, and of doubts about them.
+pub(super) fn structure_lines<'s>(
+    functions: impl IntoIterator<Item = (&'static str, &'s [Number], Option<&'s str>)>,
+    units: &UnitSystem,
+) -> String {
+    let (mut numbers, mut doubts) = (String::new(), String::new());
+    for (function, headlines, doubt) in functions {
+        for Number { name, unit, mean } in headlines {
+            let line = format!(
+                "  {function}: {name} {} {}",
+                with_error_bar(mean.value, mean.bar),
+                units.symbol(unit)
+            );
+            numbers += &format!("{}\n", line.trim_end());
+        }
+        doubt.iter().for_each(|doubt| doubts += &format!("{function}: {doubt}\n"));
+    }
+    let heading = if numbers.is_empty() { "" } else { "structure, ± 95 %:\n" };
+    format!("{heading}{numbers}{doubts}")
+}
+
+/// Text of a run's scene, if it can be read.
+pub(super) fn scene_text(run: &Path) -> Option<String> {
+    String::from_utf8(regular_file::read(&run.join("scene.toml"), LONGEST_SCENE).ok()?).ok()
+}
+
 /// Scene of a run, if it can be read.
 pub(super) fn scene_of(run: &Path) -> Option<toml::Table> {
-    let text = regular_file::read(&run.join("scene.toml"), LONGEST_SCENE).ok()?;
-    String::from_utf8(text).ok()?.parse().ok()
+    scene_text(run)?.parse().ok()
 }
 
 /// System of units of a scene.

@@ -1,6 +1,6 @@
 //! `stripmine emit`: programs of a scene as assembly text for a vector processor.
 
-use crate::console::{CommandFailure, Common, print, print_json};
+use crate::console::{CommandFailure, Common, print_json, print_text};
 use crate::emission::{GroupChoice, TargetIsa, emit_scene, write_folder};
 use clap::Args;
 use std::path::PathBuf;
@@ -48,7 +48,7 @@ impl EmitVerb {
             }));
         }
         let counts = Purpose::ALL.map(|it| format!("{} {}", count(it), it.name())).join(", ");
-        print(&format!(
+        print_text(&format!(
             "{} programs, {} bytes of arrays; instructions: {counts}\nrun it: sh {}\n",
             scene.programs.len(),
             scene.start.bytes.len(),

@@ -1,7 +1,9 @@
 //! `stripmine explain`: finds the cheapest configuration, step and run length for a target error.
 
 use super::display::decimals;
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, print_message, warn};
+use crate::console::{
+    CommandFailure, Common, clear_progress, print, print_json, print_message, print_text, warn,
+};
 use crate::report::{FrameBuilder, TableCell, terminal};
 use crate::study::explain::{
     ExplainError, LIMIT, PlanCache, PlanCacheError, PlanTarget, RunPlan, SECONDS, explain, page, seconds,
@@ -170,7 +172,7 @@ impl ExplainVerb {
         let plan = explain(&case, &target, seconds, &kept, trial, &notice).map_err(plan_failure)?;
         clear_progress();
         if !common.json {
-            print(&page(&plan))?;
+            print_text(&page(&plan))?;
         }
         let written = self.write.as_ref().map_or(Ok(()), |file| self.write_plan(&plan, file, &case));
         if let (Some(file), Ok(()), false) = (&self.write, &written, common.quiet) {
@@ -185,7 +187,7 @@ impl ExplainVerb {
         if common.json {
             print_json(&PlanDocument { plan, analyzed: rows, cut_off })?;
         } else if !rows.is_empty() {
-            print(&analysis_table(&rows, cut_off))?;
+            print(&analysis_table(&rows, cut_off.as_ref()))?;
         }
         if signals::interruption_flag().load(Ordering::SeqCst) {
             return Err(CommandFailure::Stopped(signals::ProcessEnd::Whole));
@@ -241,21 +243,22 @@ impl ExplainVerb {
     ) -> Result<Analysis, CommandFailure> {
         let prepared = case.prepared_with(&plan.overrides)?;
         let observed = (case.entry.quantities, target.place);
-        // An interrupted run ends early and is reported as cut off.
+        // An interrupted run ends early and is reported as such.
         let held = signals::hold();
         let trial = TrialControl { watch: &Stopwatch::wall(), stop: signals::interruption_flag() };
         let found: TrialSample = trial
             .sample(&prepared, observed, SampleSpan::Planned(plan.time, None))
             .map_err(CommandFailure::from)?;
         drop(held);
-        if let Some(cut_off) = found.early_end(plan.time) {
+        if found.early_end(plan.time).is_some() {
+            let cut_off = interruption([found.time, plan.time], found.seconds);
             let wall = EstimateCheck {
                 what: "wall time of a run".to_owned(),
                 estimated: plan.seconds.likely,
                 actual: found.seconds,
                 unit: "s".to_owned(),
                 is_within: false,
-                advice: "the run was cut off",
+                advice: "the run was interrupted",
             };
             return Ok(Analysis { rows: vec![wall], cut_off: Some(cut_off) });
         }
@@ -338,7 +341,13 @@ impl ExplainVerb {
     }
 }
 
-fn analysis_table(rows: &[EstimateCheck], cut_off: Option<String>) -> String {
+/// Describes a run that was interrupted at one of two times (time), the other being its end, after some wall seconds.
+fn interruption([reached, end]: [f64; 2], seconds: f64) -> String {
+    let [percent, spent] = [100.0 * reached / end, seconds].map(|it| significant(it, 2));
+    format!("interrupted at {percent} %, after {spent} s")
+}
+
+fn analysis_table(rows: &[EstimateCheck], cut_off: Option<&String>) -> String {
     let number = |of: fn(&EstimateCheck) -> f64| {
         move |it: &&EstimateCheck| with_unit(&significant(of(it), 3), &it.unit)
     };
@@ -354,11 +363,12 @@ fn analysis_table(rows: &[EstimateCheck], cut_off: Option<String>) -> String {
                 TableCell::Number(ratio, decimals(ratio, 3))
             }
         })
-        .text("remark", |it| {
-            if it.is_within { String::new() } else { format!("outside the expected range: {}", it.advice) }
+        .text("remark", |it| match (cut_off, it.is_within) {
+            (Some(cut_off), _) => (*cut_off).clone(),
+            (None, true) => String::new(),
+            (None, false) => format!("outside the expected range: {}", it.advice),
         })
-        .table("analyzed", "Estimates of the plan, compared with the run")
-        .notes(cut_off.map(|why| format!("The run was {why}; only its wall time is compared.")));
+        .table("analyzed", "Estimates of the plan, compared with the run");
     terminal::render(&table)
 }
 
@@ -367,5 +377,28 @@ pub(super) fn plan_failure(error: impl Into<ExplainError>) -> CommandFailure {
     match error.into() {
         ExplainError::Stopped => CommandFailure::Stopped(signals::ProcessEnd::Whole),
         error => StudyError::Own(Box::new(error)).into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without the end of a run its wall time says nothing about the host.
+    #[test]
+    fn interrupted_runs_are_reported_as_such() {
+        let cut_off = interruption([0.5, 50.0], 3.21);
+        assert_eq!(cut_off, "interrupted at 1 %, after 3.2 s");
+        let check = |is_within| EstimateCheck {
+            what: "wall time of a run".to_owned(),
+            estimated: 300.0,
+            actual: 3.21,
+            unit: "s".to_owned(),
+            is_within,
+            advice: "the load of the host has changed since the trials: use --patient",
+        };
+        let table = analysis_table(&[check(false)], Some(&cut_off));
+        assert!(table.contains("interrupted at 1 %") && !table.contains("host"), "{table}");
+        assert!(analysis_table(&[check(false)], None).contains("outside the expected range"));
     }
 }

@@ -65,10 +65,13 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     (
         "plot",
         &[
-            ("stripmine plot pipe-small.run", "writes SVG and PNG to pipe-small.plots"),
+            (
+                "stripmine plot pipe-small.run",
+                "writes a page with all pictures and the film to pipe-small.plots, and SVG and PNG",
+            ),
             (
                 "stripmine plot melting.run --film --color psi6",
-                "also writes a film for a browser, coloured by order",
+                "also writes the film alone, coloured by order",
             ),
         ],
     ),
@@ -84,10 +87,16 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ),
     (
         "compare",
-        &[(
-            "stripmine compare plummer --against machine.engine=reference",
-            "compares two engines bit by bit",
-        )],
+        &[
+            (
+                "stripmine compare plummer --against machine.engine=reference",
+                "compares two engines bit by bit",
+            ),
+            (
+                "stripmine compare hard-disks --against particles.packing_fraction=0.7",
+                "compares means, with the difference in standard errors",
+            ),
+        ],
     ),
     (
         "emit",
@@ -107,6 +116,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
         "scene",
         &[
             ("stripmine scene keys lattice-md", "lists every key with unit, default and meaning"),
+            ("stripmine scene keys wall", "lists the keys of all methods with a word"),
             ("stripmine scene check pipe-small", "compares the step with every theoretical limit"),
             ("stripmine scene show pipe-small", "prints a preset as a starting point"),
         ],

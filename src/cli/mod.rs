@@ -93,7 +93,7 @@ fn subcommand(verb: &Verb) -> clap::Command {
 fn key_help(methods: Methods) -> String {
     let names: Vec<&str> = methods.iter().map(|method| method.vocabulary.keys.method).collect();
     format!(
-        "Method ({}), or a word in the names or meanings of keys of all methods; default: the first method",
+        "Method ({}), and words that a key has in its section, name or meaning; without a method, keys of all methods are searched; default: the first method",
         names.join(", ")
     )
 }

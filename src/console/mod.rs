@@ -9,7 +9,8 @@ pub(crate) use failure::{FailureReport, report_failure};
 pub use output::is_untouched;
 pub(crate) use output::print_answer;
 pub(crate) use output::{
-    SHARES, STEPS, bar, clear_progress, print, print_json, print_message, progress, to_json, warn,
+    SHARES, STEPS, bar, clear_progress, print, print_json, print_message, print_prose, print_text, progress,
+    to_json, warn,
 };
 pub(crate) use verb::Verb;
 

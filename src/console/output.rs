@@ -109,6 +109,22 @@ pub(crate) fn print(text: &str) -> Result<(), CommandFailure> {
     write(|| io::stdout().write_all(quoted::escaped_for_terminal(text).as_bytes()))
 }
 
+/// Writes lines of text to standard output, wrapped to the width of the terminal or of a page; continued lines are indented.
+///
+/// # Errors
+/// [`CommandFailure::StandardOutput`] if it cannot be written.
+pub(crate) fn print_text(text: &str) -> Result<(), CommandFailure> {
+    print(&terminal::wrap_text(text))
+}
+
+/// Writes paragraphs to standard output, wrapped to the width of the terminal or of a page.
+///
+/// # Errors
+/// [`CommandFailure::StandardOutput`] if it cannot be written.
+pub(crate) fn print_prose(text: &str) -> Result<(), CommandFailure> {
+    print(&terminal::wrap_prose(text))
+}
+
 /// Writes the parser's help or version to standard output.
 pub(crate) fn print_answer(answer: &clap::Error) -> Result<(), CommandFailure> {
     write(|| answer.print())

@@ -62,6 +62,14 @@ pub fn count_with_noun(count: impl std::fmt::Display, one: &str, many: &str) -> 
     format!("{count} {}", if count == "1" { one } else { many })
 }
 
+/// Formats a number in parts of its limit, or as a multiple of it, for "the limit" to follow: `8.04 % of`, `18 times`.
+pub fn of_limit(share: f64) -> String {
+    match share > 1.0 {
+        true => format!("{} times", significant(share, 3)),
+        false => format!("{} % of", significant(100.0 * share, 3)),
+    }
+}
+
 /// Formats a power of ten.
 pub fn power_of_ten(power: i32) -> String {
     match power {
@@ -92,6 +100,11 @@ mod tests {
         assert_eq!(range([0.1201, 0.1204], 2), "0.12");
         assert_eq!(range([], 2), "nothing");
         assert_eq!([1, 3].map(|count| count_with_noun(count, "run", "runs")), ["1 run", "3 runs"]);
+    }
+
+    #[test]
+    fn numbers_above_a_limit_are_multiples() {
+        assert_eq!([0.0804, 1.0, 18.04].map(of_limit), ["8.04 % of", "100 % of", "18 times"]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Means on the charts of observables: a ribbon after the transient, and a band over the transient.
 
+use crate::cli::display::{mean_or_reason, reasons};
 use crate::report::figure::{ChartBand, Series, Style};
 use stripmine_physics::averages::{Average, AverageOutcome, AveragedRows, Estimate, RunAverages};
 use stripmine_physics::method::{Methods, QuantityKind, observer};
@@ -63,17 +64,12 @@ impl ColumnMeans {
 
     /// Mean of a column with its error, or one or two words on why there is none.
     pub(super) fn brief_text(&self, name: &str) -> String {
-        self.of_column(name).map_or_else(String::new, |average| match &average.outcome {
-            AverageOutcome::Mean(Estimate { mean, bar, .. }) if average.of == "rate" => {
-                format!("rate {}", with_error_bar(*mean, *bar))
-            }
-            AverageOutcome::Mean(Estimate { mean, bar, .. }) => with_error_bar(*mean, *bar),
-            AverageOutcome::Constant { .. } => "constant".to_owned(),
-            AverageOutcome::TooShort { .. } => "too short".to_owned(),
-            AverageOutcome::Changing { .. } => "changing".to_owned(),
-            AverageOutcome::Undefined => "undefined".to_owned(),
-            AverageOutcome::Kept { .. } => String::new(),
-        })
+        self.of_column(name).map_or_else(String::new, mean_or_reason)
+    }
+
+    /// Explanations of the words of [`brief_text`](Self::brief_text) for some columns.
+    pub(super) fn reasons(&self, names: &[&str]) -> Vec<&'static str> {
+        reasons(self.averages.iter().filter(|average| names.contains(&average.quantity)))
     }
 
     /// Short description of a column's mean.

@@ -8,11 +8,12 @@ mod particles;
 mod structure;
 mod window;
 
-use super::display::{UnitSystem, scene_of};
+use super::display::{UnitSystem, scene_of, scene_text};
 use super::run_folder;
 use crate::console::{CommandFailure, Common, print, print_json, warn};
 use crate::report::figure::{Figure, png, svg};
-use crate::report::{html, terminal};
+use crate::report::html::{self, RunPage};
+use crate::report::terminal;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use colouring::{Colouring, RunColouring};
@@ -28,7 +29,7 @@ use stripmine_physics::quoted;
 
 /// Plots a run: observables, structure functions and last state
 ///
-/// Writes SVG and PNG files and prints small curves to the terminal. A long box also gets its density over time.
+/// Writes a page with all pictures and the film, index.html, and SVG and PNG files; prints small curves to the terminal. A long box also gets its density over time.
 #[derive(Args)]
 pub(super) struct PlotVerb {
     /// Folder of a run
@@ -39,7 +40,7 @@ pub(super) struct PlotVerb {
     /// Colours the particles by this quantity; default: speed, or one colour each for up to six bodies with tracks
     #[arg(long, value_parser = PossibleValuesParser::new(Colouring::possible_values()))]
     color: Option<String>,
-    /// Also writes a film of the trajectory: film.html, a self-contained page for a browser
+    /// Also writes the film alone, as large as the screen: film.html, a self-contained page for a browser
     #[arg(long)]
     film: bool,
     /// Folder for the pictures; default: RUN.plots
@@ -50,6 +51,8 @@ pub(super) struct PlotVerb {
     overwrite: bool,
 }
 
+/// File name of the page with all pictures.
+const PAGE: &str = "index.html";
 /// File name of a film.
 const FILM: &str = "film.html";
 /// Kind of a folder of pictures.
@@ -80,38 +83,61 @@ impl PlotVerb {
             let stem = run.file_stem().unwrap_or_default();
             PathBuf::from(format!("{}.plots", stem.to_string_lossy()))
         });
-        let (mut names, mut pictures, mut taken) = (vec![], vec![], BTreeSet::new());
+        let film = match film::film(&run, &colours) {
+            Err(error) if self.film => return Err(error.into()),
+            film => film,
+        };
+        let (mut drawn, mut taken) = (vec![], BTreeSet::new());
         for figure in &figures {
             let Some((vector, pixels)) = draw_figure(figure, common)? else { continue };
-            let name = file_name(&figure.name, &mut taken);
-            names.extend(["svg", "png"].map(|kind| format!("{name}.{kind}")));
-            pictures.extend([vector.into_bytes(), pixels]);
+            drawn.push((figure, vector, pixels, file_name(&figure.name, &mut taken)));
         }
-        if self.film {
-            let (film, notes) = film::film(&run, &colours)?;
-            names.push(FILM.to_owned());
-            pictures.push(html::film_page(&film, &notes).into_bytes());
+        let shown = match &film {
+            Ok((film, _)) if film.frames.len() > 1 => Ok(film),
+            Ok(_) => Err("the trajectory has only one frame.".to_owned()),
+            Err(error) => Err(error.to_string()),
+        };
+        let and_film = if shown.is_ok() { " and the film" } else { "" };
+        let page = html::run_page(&RunPage {
+            title: quoted::quoted(&run.file_stem().unwrap_or_default().to_string_lossy()),
+            numbers: table.numbers_table(&wanted),
+            pictures: drawn
+                .iter()
+                .map(|(figure, vector, _, name)| (*figure, vector.as_str(), name.as_str()))
+                .collect(),
+            film: shown,
+            notes: film.as_ref().map_or(&[], |(_, notes)| notes),
+            scene: scene_text(&run),
+        });
+        let mut files = vec![(PAGE.to_owned(), page.into_bytes())];
+        for (_, vector, pixels, name) in drawn {
+            files.extend([(format!("{name}.svg"), vector.into_bytes()), (format!("{name}.png"), pixels)]);
+        }
+        if let (true, Ok((film, notes))) = (self.film, &film) {
+            files.push((FILM.to_owned(), html::film_page(film, notes).into_bytes()));
         }
         let mut folder = OwnedFolder::open(&out, PICTURES, &[])?;
-        folder.claim(names.iter().map(String::as_str), self.overwrite)?;
+        folder.claim(files.iter().map(|(name, _)| name.as_str()), self.overwrite)?;
         let mut written = vec![];
-        for (name, bytes) in names.iter().zip(&pictures) {
+        for (name, bytes) in &files {
             written.push(folder.write(name, |out| out.write_all(bytes))?.display().to_string());
         }
         if common.json {
             return print_json(&json!({ "files": written }));
         }
-        let mut small = table.terminal_table(&wanted, &out);
+        let mut small = table.terminal_table(&wanted);
+        let at = |name: &str| quoted::path(&out.join(name));
+        small = small.note(format!("all pictures{and_film} on one page: {}", at(PAGE)));
         if self.film {
-            small = small.note(format!("film for a browser: {}", quoted::path(&out.join(FILM))));
+            small = small.note(format!("film for a browser: {}", at(FILM)));
         }
         print(&terminal::render(&small))
     }
 }
 
-/// Returns true if the name can be that of a picture or a film.
+/// Returns true if the name can be that of a picture, of a film or of the page.
 fn is_picture(name: &str) -> bool {
-    name == FILM || [".svg", ".png"].iter().any(|end| name.ends_with(end))
+    [FILM, PAGE].contains(&name) || [".svg", ".png"].iter().any(|end| name.ends_with(end))
 }
 
 /// Draws a picture as SVG and PNG; warns and returns none if it cannot be drawn.

@@ -2,14 +2,15 @@
 
 use super::means::ColumnMeans;
 use crate::cli::display::UnitSystem;
-use crate::frame::{FormattedTable, FrameBuilder};
+use crate::frame::{FormattedTable, FrameBuilder, TableCell};
 use crate::report::figure::{Chart, ChartAxis, Figure, Series, Style};
+use crate::report::terminal;
 use crate::statistics::quantile;
 use std::collections::BTreeMap;
 use std::path::Path;
 use stripmine_physics::method::{Methods, observer};
 use stripmine_physics::number::significant;
-use stripmine_physics::quoted::{self, quoted};
+use stripmine_physics::quoted::quoted;
 use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::run::{TableError, TableReader};
 use stripmine_physics::words::suggestion;
@@ -22,8 +23,9 @@ const FLAT: f64 = 0.2;
 const PEAKS: f64 = 0.05;
 /// Most points of a curve.
 const POINTS: usize = 2000;
-/// Length of a curve in the terminal (characters): a row fits into 80 columns.
+/// Length of a curve in the terminal (characters), and the shortest where other columns need the space.
 const SMALL: usize = 16;
+const SHORT: usize = 6;
 /// Significant digits of a value in the terminal.
 const DIGITS: usize = 4;
 
@@ -211,9 +213,10 @@ impl ObservableTable {
         self.means.as_ref()?.mean_text(&self.columns[column])
     }
 
-    /// Table with a row for each column: first, last, mean and curve.
-    pub(super) fn terminal_table(&self, wanted: &[SelectedColumn], out: &Path) -> FormattedTable {
+    /// Table with a row for each column: first, last and mean.
+    pub(super) fn numbers_table(&self, wanted: &[SelectedColumn]) -> FormattedTable {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| significant(value, DIGITS));
+        let names: Vec<&str> = wanted.iter().map(|it| self.columns[it.column].as_str()).collect();
         FrameBuilder::of(wanted)
             .text("quantity", |it| quoted(&self.columns[it.column]))
             .text("first", |it| number(self.column(it.column).next()))
@@ -223,18 +226,29 @@ impl ObservableTable {
                     .as_ref()
                     .map_or_else(String::new, |means| means.brief_text(&self.columns[it.column]))
             })
-            .text("curve", |it| sparkline(&self.column(it.column).collect::<Vec<_>>()))
             .table("plot", "Observables over time")
-            .note(format!("pictures: {}", quoted::path(out)))
+            .notes(self.means.iter().flat_map(|means| means.reasons(&names)))
+    }
+
+    /// Table with a row for each column and its curve, as long as 80 columns of a terminal allow.
+    pub(super) fn terminal_table(&self, wanted: &[SelectedColumn]) -> FormattedTable {
+        let mut table = self.numbers_table(wanted);
+        let left = terminal::NARROW.saturating_sub(terminal::width_of(&table) + terminal::BESIDE);
+        table.columns.push("curve".to_owned());
+        for (row, it) in table.rows.iter_mut().zip(wanted) {
+            let values: Vec<f64> = self.column(it.column).collect();
+            row.push(TableCell::Text(sparkline(&values, left.clamp(SHORT, SMALL))));
+        }
+        table
     }
 }
 
 /// Curve of a few block characters, scaled from the smallest to the largest value.
-fn sparkline(values: &[f64]) -> String {
+fn sparkline(values: &[f64], length: usize) -> String {
     const STEPS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let count = values.len().min(SMALL);
+    let count = values.len().min(length);
     let of = |at: usize| {
         let value = values[at * (values.len() - 1) / (count - 1).max(1)];
         let share = if high > low { (value - low) / (high - low) } else { 0.0 };
@@ -246,13 +260,12 @@ fn sparkline(values: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::TableCell;
 
     #[test]
     fn sparklines_span_smallest_to_largest() {
-        assert_eq!(sparkline(&[0.0, 1.0, 2.0, 4.0]), "▁▃▅█");
-        assert_eq!(sparkline(&[3.0]), "▁");
-        assert_eq!(sparkline(&[1.0; 100]).chars().count(), SMALL);
+        assert_eq!(sparkline(&[0.0, 1.0, 2.0, 4.0], SMALL), "▁▃▅█");
+        assert_eq!(sparkline(&[3.0], SMALL), "▁");
+        assert_eq!(sparkline(&[1.0; 100], 7).chars().count(), 7);
     }
 
     #[test]
@@ -268,7 +281,7 @@ mod tests {
         let names: Vec<String> = figures.into_iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["kinetic-elastic", "temperature", "px-py", "far"]);
         // Small numbers keep their significant digits in the terminal.
-        let small = observed.terminal_table(&wanted, Path::new("out"));
+        let small = observed.terminal_table(&wanted);
         assert_eq!(small.rows[3][2], TableCell::Text("1e-15".to_owned()));
     }
 }

@@ -3,11 +3,11 @@
 pub(super) mod seeds;
 pub(super) mod side_by_side;
 
-use super::display::UnitSystem;
+use super::display::{UnitSystem, structure_lines};
 use super::processes;
 use crate::console::{
-    CommandFailure, Common, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print, print_json,
-    print_message, warn,
+    CommandFailure, Common, MOST_THREADS, STEPS, bar, clear_progress, count_up_to, print_json, print_message,
+    print_text, warn,
 };
 use crate::provenance::built;
 use crate::study::StudyCase;
@@ -146,9 +146,13 @@ impl RunVerb {
             Ending::Done(summary) if common.json => print_json(&summary),
             Ending::Done(summary) => {
                 if !common.quiet {
-                    summary.warnings.iter().for_each(warn);
+                    // Doubts about the structure are among the lines of the summary.
+                    let doubts: Vec<&str> =
+                        summary.structure.iter().filter_map(|it| it.doubt.as_deref()).collect();
+                    let is_new = |warning: &&String| !doubts.iter().any(|doubt| warning.contains(doubt));
+                    summary.warnings.iter().filter(is_new).for_each(warn);
                 }
-                print(&summary_text(&summary, folder, &scene))
+                print_text(&summary_text(&summary, folder, &scene))
             }
             Ending::Interrupted { clock } => {
                 Err(CommandFailure::Interrupted { moment: clock.to_string(), folder: folder.to_owned() })
@@ -244,9 +248,11 @@ fn summary_text(summary: &Summary, folder: &Path, scene: &str) -> String {
         summary.in_words
     );
     text.push_str(&units.averages(&summary.averages).to_string());
-    for StructureSummary { name, doubt, .. } in &summary.structure {
-        doubt.iter().for_each(|doubt| text.push_str(&format!("{name}: {doubt}\n")));
-    }
+    let functions = summary.structure.iter();
+    let functions = functions.map(|StructureSummary { name, headlines, doubt, .. }| {
+        (*name, headlines.as_slice(), doubt.as_deref())
+    });
+    text.push_str(&structure_lines(functions, &units));
     for choice in &summary.choices {
         text.push_str(&format!("chosen: {choice}\n"));
     }

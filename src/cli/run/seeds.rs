@@ -2,9 +2,9 @@
 
 use super::RunVerb;
 use super::side_by_side::{PlannedRun, SideBySide};
-use crate::cli::display::UnitSystem;
+use crate::cli::display::{UnitSystem, structure_lines};
 use crate::cli::processes;
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, to_json};
+use crate::console::{CommandFailure, Common, clear_progress, print_json, print_text, to_json};
 use crate::provenance::built;
 use serde::Serialize;
 use std::io::Write;
@@ -189,11 +189,12 @@ impl RunVerb {
             return print_json(&ensemble);
         }
         let SeedEnsemble { averages, seconds, structure, .. } = &ensemble;
-        let averages = UnitSystem::of(prepared.scene.parse().ok().as_ref()).averages(averages);
-        let doubt = |it: &StructureFunction| Some(format!("{}: {}\n", it.name, it.doubt.as_ref()?));
-        let doubts: String = structure.iter().filter_map(doubt).collect();
-        print(&format!(
-            "{count} runs with different seeds, in {} s\n{averages}{doubts}results: {}\n",
+        let units = UnitSystem::of(prepared.scene.parse().ok().as_ref());
+        let averages = units.averages(averages);
+        let functions = structure.iter().map(|it| (it.name, it.headlines.as_slice(), it.doubt.as_deref()));
+        let structure = structure_lines(functions, &units);
+        print_text(&format!(
+            "{count} runs with different seeds, in {} s\n{averages}{structure}results: {}\n",
             significant(*seconds, 3),
             quoted::path(&folder)
         ))

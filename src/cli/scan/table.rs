@@ -15,8 +15,6 @@ use toml::Value;
 
 /// Significant digits of a key's value in the terminal.
 const DIGITS: usize = 6;
-/// Blanks around the text of a column, and between two of them.
-const BESIDE: usize = 3;
 
 /// Means over keys.
 #[derive(Clone, Debug, Serialize)]
@@ -142,8 +140,7 @@ impl KeyTable {
         units: &UnitSystem,
         note: String,
     ) -> String {
-        let table = self.terminal_table(of, main, units).note(note);
-        if of.is_empty() { terminal::render_narrow(&table) } else { terminal::render(&table) }
+        terminal::render(&self.terminal_table(of, main, units).note(note))
     }
 
     fn terminal_table(&self, of: &[String], main: &[&str], units: &UnitSystem) -> FormattedTable {
@@ -272,11 +269,11 @@ fn key_cell(value: Option<&Value>) -> FrameValue {
     }
 }
 
-/// Longest line of a heading or text (characters), with its blanks: headings are broken at blanks.
+/// Longest line of a heading or text (characters), with its padding: headings are broken at blanks.
 fn width_of(cells: &[String]) -> usize {
     let heading = cells[0].split(' ').map(|word| word.chars().count()).max();
     let texts = cells[1..].iter().map(|text| text.chars().count());
-    texts.chain(heading).max().unwrap_or_default() + BESIDE
+    texts.chain(heading).max().unwrap_or_default() + terminal::BESIDE
 }
 
 fn with_unit(name: &str, unit: &str) -> String {

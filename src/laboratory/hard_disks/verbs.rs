@@ -2,7 +2,7 @@
 
 use super::study::soft_hard::{SoftHardComparison, compare_soft_hard};
 use crate::console::Verb;
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress};
+use crate::console::{CommandFailure, Common, clear_progress, print_json, print_prose, progress};
 use crate::laboratory::write_result;
 use crate::results::Folder;
 use clap::{Args, FromArgMatches};
@@ -58,6 +58,6 @@ impl SoftHardVerb {
         let made = compare_soft_hard(&question, &|share| bar.set_position((1e3 * share) as u64))?;
         clear_progress();
         let words = write_result(&folder, ("soft-hard", &made), start, common)?;
-        if common.json { print_json(&made.json()) } else { print(&(words + "\n")) }
+        if common.json { print_json(&made.json()) } else { print_prose(&words) }
     }
 }

@@ -149,7 +149,7 @@ pub(crate) fn picture_id(section: &Section, figure: &Figure) -> String {
 }
 
 /// Title at the beginning of a caption.
-fn heading(title: &str) -> Markup {
+pub(super) fn heading(title: &str) -> Markup {
     let ends_itself = title.ends_with(['.', '?', '!']);
     html! { strong { (title) @if !ends_itself { "." } } }
 }
@@ -169,6 +169,23 @@ const ROWS: usize = 10;
 
 /// Table in a box that scrolls if the table is wider than the page: a group, since landmarks of one page need different names. A long table is cut and its file is linked.
 fn table(table: &FormattedTable, folder: &str) -> Markup {
+    html! {
+        (data_table(table, ROWS))
+        @if table.rows.len() > ROWS {
+            @let file = format!("{folder}/{}.csv", table.name);
+            p.note {
+                "First " (ROWS) " of " (TableCell::Count(table.rows.len() as u64).formatted_text()) " rows; all rows: "
+                a href=(file) { code { (file) } } "."
+            }
+        }
+        @for note in &table.notes {
+            p.note { (prose(note)) }
+        }
+    }
+}
+
+/// First rows of a table.
+pub(super) fn data_table(table: &FormattedTable, rows: usize) -> Markup {
     let numeric = |i: usize| table.rows.iter().all(|row| row.get(i).is_some_and(TableCell::is_number));
     html! {
         div.scroll tabindex="0" role="group" aria-label=(table.title) {
@@ -182,7 +199,7 @@ fn table(table: &FormattedTable, folder: &str) -> Markup {
                     }
                 }
                 tbody {
-                    @for row in table.rows.iter().take(ROWS) {
+                    @for row in table.rows.iter().take(rows) {
                         tr {
                             @for cell in row {
                                 td class=[(!cell.is_number()).then_some("words")] { (cell.formatted_text()) }
@@ -191,16 +208,6 @@ fn table(table: &FormattedTable, folder: &str) -> Markup {
                     }
                 }
             }
-        }
-        @if table.rows.len() > ROWS {
-            @let file = format!("{folder}/{}.csv", table.name);
-            p.note {
-                "First " (ROWS) " of " (TableCell::Count(table.rows.len() as u64).formatted_text()) " rows; all rows: "
-                a href=(file) { code { (file) } } "."
-            }
-        }
-        @for note in &table.notes {
-            p.note { (prose(note)) }
         }
     }
 }

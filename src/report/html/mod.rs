@@ -5,9 +5,11 @@ mod film_page;
 mod inline;
 mod item;
 mod quantised;
+mod run_page;
 mod words;
 
 pub(crate) use film_page::film_page;
+pub(crate) use run_page::{RunPage, run_page};
 
 use super::figure::{Figure, style};
 use super::tally::Tally;

@@ -197,7 +197,7 @@ pub struct StepLimit {
     pub step: f64,
     /// Step of the scene divided by the limit.
     pub share: f64,
-    /// Share above which the user is warned; infinite where the limit is informative.
+    /// Share that most runs bear; infinite where the limit is advice.
     pub(crate) warned_beyond: f64,
     /// Consequence of longer steps.
     pub beyond: LimitConsequence,
@@ -206,7 +206,12 @@ pub struct StepLimit {
 }
 
 impl StepLimit {
-    /// True if the step exceeds the limit by enough to warn the user.
+    /// True if the limit is advice, which runs may exceed without a warning.
+    pub fn is_advice(&self) -> bool {
+        self.warned_beyond.is_infinite()
+    }
+
+    /// True if the step exceeds the limit by more than most runs bear.
     pub fn is_passed(&self) -> bool {
         self.share > self.warned_beyond
     }

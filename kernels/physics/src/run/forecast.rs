@@ -6,7 +6,7 @@ use crate::method::{
     Clock, Fact, LimitConsequence, PhysicsFailure, Prepared, START_TEMPERATURE, StartPurpose, StepLimit,
     Until,
 };
-use crate::number::{count_with_noun, significant};
+use crate::number::{count_with_noun, of_limit, significant};
 use crate::scene::{DT, Warning};
 use crate::units::with_symbol;
 use serde_json::{Map, Value, json};
@@ -34,10 +34,12 @@ pub fn step_forecast(prepared: &Prepared) -> Vec<Fact> {
     }
     let said = limits.iter().map(|limit| {
         let words = format!(
-            "at most {}, {}; {}",
+            "dt is {} the {} {}; {}{}",
+            of_limit(limit.share),
+            if limit.is_advice() { "advised" } else { "limit" },
             with_symbol(&significant(limit.step, 5), &prepared.units, "time"),
-            multiple(limit),
-            effect_beyond_limit(limit)
+            effect_beyond_limit(limit),
+            borne(limit)
         );
         Fact { data: None, words: Some((limit.name, words)) }
     });
@@ -46,11 +48,11 @@ pub fn step_forecast(prepared: &Prepared) -> Vec<Fact> {
     facts
 }
 
-/// Limit as a multiple of the step or, if the step is larger, the step as a multiple of the limit.
-fn multiple(limit: &StepLimit) -> String {
-    match limit.share > 1.0 {
-        true => format!("and dt is {} times that", significant(limit.share, 3)),
-        false => format!("{} times dt", significant(1.0 / limit.share, 3)),
+/// Multiple of a limit that most runs bear, for a step between both; empty elsewhere.
+fn borne(limit: &StepLimit) -> String {
+    match limit.share > 1.0 && !limit.is_advice() && !limit.is_passed() {
+        true => format!(", but most runs bear {} times", significant(limit.warned_beyond, 3)),
+        false => String::new(),
     }
 }
 
@@ -62,22 +64,23 @@ fn effect_beyond_limit(limit: &StepLimit) -> &'static str {
     }
 }
 
-/// Warning of a step above the lowest limit, unless the scene's check has already warned of its step.
+/// Warning of a step above the lowest limit that is not advice, unless the scene's check has already warned of its step.
 pub fn above_limits(prepared: &Prepared) -> Option<Warning> {
     let key = DT.path();
     if prepared.warnings.iter().any(|warning| warning.key == key) {
         return None;
     }
-    let above = prepared.step_limits.iter().filter(|limit| limit.is_passed());
+    let above = prepared.step_limits.iter().filter(|limit| limit.share > 1.0 && !limit.is_advice());
     let limit = above.max_by(|a, b| a.share.total_cmp(&b.share))?;
     let in_units = |step: f64, digits| with_symbol(&significant(step, digits), &prepared.units, "time");
     let message = format!(
-        "dt = {} is {} times the limit {} ({}); {}",
+        "dt = {} is {} the limit {} ({}); {}{}",
         in_units(limit.share * limit.step, 5),
-        significant(limit.share, 3),
+        of_limit(limit.share),
         in_units(limit.step, 5),
         limit.name,
-        effect_beyond_limit(limit)
+        effect_beyond_limit(limit),
+        borne(limit)
     );
     let suggestion = format!("use dt <= {}", significant(limit.step, 3));
     Some(Warning { check: limit.name, share: limit.share, is_refusal: false, key, message, suggestion })

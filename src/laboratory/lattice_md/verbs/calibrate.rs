@@ -1,7 +1,7 @@
 //! `stripmine calibrate`: times of this host's operations.
 
 use crate::console::{
-    CommandFailure, Common, clear_progress, print, print_json, print_message, progress, warn,
+    CommandFailure, Common, clear_progress, print_json, print_message, print_text, progress, warn,
 };
 use crate::laboratory::lattice_md::study::calibration::calibrate;
 use clap::Args;
@@ -49,7 +49,7 @@ impl CalibrateVerb {
             return print_json(&model);
         }
         let measured = &model.measured;
-        print(&format!(
+        print_text(&format!(
             "{}, {}: measured in {:.0} s on a machine that was {}. The median deviation of programs from the model is {:.1} %.\n",
             model.title,
             model.instruction_set,

@@ -1,6 +1,6 @@
 //! `stripmine chart density-cost`: cost against density, as data and charts.
 
-use crate::console::{CommandFailure, Common, clear_progress, print, print_json, progress};
+use crate::console::{CommandFailure, Common, clear_progress, print_json, print_prose, progress};
 use crate::laboratory::lattice_md::study::density_cost::density_cost;
 use crate::laboratory::lattice_md::study::searches;
 use crate::laboratory::write_result;
@@ -35,7 +35,7 @@ impl DensityCostVerb {
         clear_progress();
         match common.json {
             true => print_json(&serde_json::json!({ "cost": cost.json(), "searches": searches.json() })),
-            false => print(&format!("{said}\n\n{also_said}\n")),
+            false => print_prose(&format!("{said}\n\n{also_said}")),
         }
     }
 }

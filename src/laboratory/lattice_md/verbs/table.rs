@@ -2,11 +2,13 @@
 
 use super::print_result;
 use super::validate_model::host_model;
-use crate::console::{CommandFailure, Common};
+use crate::console::{CommandFailure, Common, print};
+use crate::frame::FormattedTable;
 use crate::laboratory::host_table::host_frame;
 use crate::laboratory::lattice_md::study::efficiency_table::{TableScene, efficiency_table};
 use crate::laboratory::lattice_md::study::ladder::ladder;
 use crate::model::machines;
+use crate::report::terminal;
 use crate::results::FinishedItem;
 use clap::Args;
 use std::path::PathBuf;
@@ -31,6 +33,9 @@ pub(super) struct TableVerb {
     /// Prints the clock periods of a step by every clock model instead, from the trivial one to chaining and memory ports
     #[arg(long)]
     ladder: bool,
+    /// Prints all tables: ways of counting, sections, vector lengths, classes of operations, simpler scenes
+    #[arg(long, conflicts_with_all = ["host", "ladder"])]
+    all: bool,
 }
 
 /// Help of the option `--machine`.
@@ -51,6 +56,15 @@ impl TableVerb {
             true => ladder(&question, &machine)?,
             false => efficiency_table(&question, &machine)?,
         };
-        print_result(&made, common)
+        match made.frames.split_first() {
+            Some((first, others)) if !(others.is_empty() || self.all || self.ladder || common.json) => {
+                let titles: Vec<&str> = others.iter().map(|frame| frame.title.as_str()).collect();
+                let table = FormattedTable::from(first)
+                    .note(format!("Machine: {}.", machine.title()))
+                    .note(format!("Further tables, printed by --all: {}.", titles.join("; ")));
+                print(&terminal::render(&table))
+            }
+            _ => print_result(&made, common),
+        }
     }
 }

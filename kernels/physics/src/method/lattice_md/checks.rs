@@ -3,7 +3,7 @@
 use super::GranularTotals;
 use super::balance::EnergyBalance;
 use crate::method::RunWarning;
-use crate::number::significant;
+use crate::number::{of_limit, significant};
 
 /// Tolerated balance error relative to the energy that passed through. An error that grows evenly to it is 5 % in the mean over the second half of a
 /// run, three quarters of its final value.
@@ -43,9 +43,9 @@ pub(super) fn energy(balance: &EnergyBalance, passed: f64) -> Option<RunWarning>
     (!is_balanced).then(|| {
         let [has, is_wrong] = if off < 0.0 { ["lost", "too little"] } else { ["created", "too much"] };
         let message = format!(
-            "the integration has {has} {:.2} % of the energy that passed through, {} {is_wrong}: lower dt, or choose another \
-             integrator",
-            100.0 * off.abs(), significant(balance.balance_error.abs(), 4));
+            "the integration has {has} {:.2} % of the energy that passed through, {} the limit {:.2} %, {} {is_wrong}: lower dt, \
+             or choose another integrator",
+            100.0 * off.abs(), of_limit(off.abs() / BALANCED), 100.0 * BALANCED, significant(balance.balance_error.abs(), 4));
         RunWarning { check: "energy-balance", value: off, limit: BALANCED, message }
     })
 }
@@ -63,6 +63,8 @@ mod tests {
         assert_eq!(off(0.099), None);
         let (value, message) = off(0.25).unwrap();
         assert!(value == 0.125 && message.contains("has created 12.50 %"), "{message}");
+        // By hand: 0.125/(0.05/0.75) = 1.875.
+        assert!(message.contains("passed through, 1.88 times the limit 6.67 %, 0.25 too much"), "{message}");
         assert!(off(-0.25).unwrap().1.contains("has lost 12.50 %"));
         assert!(off(f64::NAN).is_some());
         assert_eq!(energy(&EnergyBalance::default(), 0.0), None);

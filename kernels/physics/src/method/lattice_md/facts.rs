@@ -4,7 +4,7 @@ use super::check::CheckedGranularScene;
 use super::theory::limits;
 use super::theory::trial_contact::contact_error;
 use crate::method::Fact;
-use crate::number::significant;
+use crate::number::{of_limit, significant};
 use crate::units::with_symbol;
 use crate::words::Words;
 use serde_json::json;
@@ -46,8 +46,12 @@ pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
             "penetration of an impact",
             format!("{} diameters", significant(e.impact_penetration, 4)),
         ),
-        Fact::words("damping γ dt, dense 3 γ dt, limit", {
-            [e.damping, e.network_damping, e.damping_limit].map(|number| significant(number, 4)).join(", ")
+        Fact::words("damping of a step", {
+            let [alone, dense] = [e.damping, e.network_damping].map(|it| of_limit(it / e.damping_limit));
+            format!(
+                "γ dt is {alone} the limit {}; {dense} it in dense packings",
+                significant(e.damping_limit, 4)
+            )
         }),
     ]);
     facts

@@ -4,7 +4,7 @@ use super::conserved::ConservedQuantities;
 use super::encounter::NearestPair;
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::RunWarning;
-use crate::number::significant;
+use crate::number::{of_limit, significant};
 use crate::observe::relative_energy_error;
 use serde_json::{Value, json};
 
@@ -88,8 +88,10 @@ impl EnergyMonitor {
         };
         let nearest = self.nearest_in_words(id).map_or(String::new(), |words| format!("; {words}"));
         let message = format!(
-            "the energy {off} at step {steps}, time {}, the largest error found{nearest}: {remedy}",
-            significant(steps as f64 * dt, 6)
+            "the energy {off} at step {steps}, time {}, the largest error found, {} the limit {} %{nearest}: {remedy}",
+            significant(steps as f64 * dt, 6),
+            of_limit(error / MOST),
+            100.0 * MOST
         );
         Some(RunWarning { check: "energy-balance", value: error, limit: MOST, message })
     }

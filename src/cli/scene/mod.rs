@@ -1,5 +1,7 @@
 //! `stripmine scene`: lists presets and keys, and checks scenes.
 
+mod keys;
+
 use crate::console::{CommandFailure, Common, print, print_json, warn};
 use crate::emission::{EmissionError, ListingTarget, listing_text};
 use crate::frame::{FormattedTable, FrameBuilder, csv};
@@ -13,11 +15,10 @@ use serde::Serialize;
 use serde_json::{Map, json};
 use stripmine_kernels::backend::ListingLine;
 use stripmine_kernels::emit::GroupSize;
-use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load, method};
+use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load};
 use stripmine_physics::quoted;
-use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::run::forecast;
-use stripmine_physics::scene::{Fallback, Key, Preset, SECTIONS};
+use stripmine_physics::scene::Preset;
 
 /// Lists presets and keys, checks a scene
 #[derive(Args)]
@@ -64,8 +65,8 @@ enum SceneAction {
     },
     /// Lists keys of a scene file: type, unit, default, meaning
     Keys {
-        /// Method whose keys are listed, or a word in keys of all methods
-        what: Option<String>,
+        /// Method whose keys are listed, and words that a key has in its section, name or meaning
+        what: Vec<String>,
     },
 }
 
@@ -86,7 +87,7 @@ impl SceneVerb {
                 };
                 programs(scene, &prepared, &machine, output, common)
             }
-            SceneAction::Keys { what } => keys(what.as_deref(), common, methods),
+            SceneAction::Keys { what } => keys::keys(what, common, methods),
         }
     }
 }
@@ -179,11 +180,6 @@ struct ProgramListing {
     text: String,
 }
 
-/// Columns of operations, in a table of their own.
-const COUNTED: [&str; 4] = ["n is", "operations (NOP)", "of them computing", "divisions and roots"];
-/// Columns of flops and bytes, in a table of their own.
-const MOVED: [&str; 3] = ["flops", "bytes", "flop a byte"];
-
 /// Output of the programs of a scene.
 enum ProgramOutput {
     /// Operations and clock periods, as tables.
@@ -218,12 +214,7 @@ fn programs(
             return print(&String::from_utf8_lossy(&bytes));
         }
         let [operations, clocks] = frames.each_ref().map(FormattedTable::from);
-        // Side by side, all columns would be wider than a page.
-        let title = format!(
-            "{name}: floating-point operations and bytes of a section, for one element of its vectors"
-        );
-        let moved = FormattedTable { title, ..operations.clone().without(&COUNTED) };
-        let tables = [operations.without(&MOVED).notes(note), moved, clocks];
+        let tables = [operations.notes(note), clocks];
         return print(&tables.each_ref().map(terminal::render).join("\n"));
     };
     let of = |it: &VectorProgram| {
@@ -246,128 +237,6 @@ fn programs(
         let comment = if target.is_some() { '#' } else { ';' };
         format!("{comment} {part}: vectors of n = {length} = {n} elements, {times} times a step\n{text}")
     };
-    let note = note.map_or(String::new(), |note| format!("; {note}\n"));
+    let note = note.map_or(String::new(), |note| format!("; {}\n", note.replace("; ", "\n; ")));
     print(&(note + &listings.iter().map(text).collect::<String>()))
-}
-
-/// A key of some methods.
-#[derive(Serialize)]
-struct MatchingKey {
-    methods: Vec<&'static str>,
-    #[serde(flatten)]
-    line: KeyLine,
-}
-
-/// Lists the keys of all methods with a word in their section, name or meaning.
-fn matching_keys(word: &str, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
-    let wanted = word.to_lowercase();
-    let mut found: Vec<MatchingKey> = vec![];
-    for entry in methods {
-        for line in entry.vocabulary.keys.keys().map(KeyLine::of) {
-            let text = format!("{}.{} {}", line.section, line.key, line.meaning).to_lowercase();
-            if !text.contains(&wanted) {
-                continue;
-            }
-            let is_same = |known: &&mut MatchingKey| known.line == line;
-            match found.iter_mut().find(is_same) {
-                Some(known) => known.methods.push(entry.vocabulary.keys.method),
-                None => found.push(MatchingKey { methods: vec![entry.vocabulary.keys.method], line }),
-            }
-        }
-    }
-    if found.is_empty() {
-        return Err(NoSuchKey(word.to_owned()).into());
-    }
-    if common.json {
-        return print_json(&found);
-    }
-    let table = FrameBuilder::of(&found)
-        .text("key", |it| match it.line.section {
-            "" => it.line.key.to_owned(),
-            section => format!("{section}.{}", it.line.key),
-        })
-        .text("methods", |it| {
-            if it.methods.len() == methods.len() { "all".to_owned() } else { it.methods.join(", ") }
-        })
-        .text("value", |it| &it.line.r#type)
-        .text("default", |it| it.line.default.unwrap_or("required"))
-        .text("meaning", |it| it.line.meaning)
-        .table("keys", format!("Keys with `{word}` in their name or meaning"));
-    print(&terminal::render(&table))
-}
-
-/// A word that is neither a method nor in a key.
-#[derive(Debug, thiserror::Error)]
-#[error(
-    "no method is called `{0}`, and no key has it in its name or meaning; `stripmine scene keys` lists the keys of a method"
-)]
-struct NoSuchKey(String);
-
-impl Reported for NoSuchKey {
-    fn class(&self) -> ErrorClass {
-        ErrorClass::Usage
-    }
-}
-
-/// Key as data.
-#[derive(PartialEq, Serialize)]
-struct KeyLine {
-    section: &'static str,
-    key: &'static str,
-    r#type: String,
-    unit: &'static str,
-    default: Option<&'static str>,
-    required: bool,
-    used_with: Vec<&'static str>,
-    meaning: &'static str,
-}
-
-impl KeyLine {
-    fn of(key: &Key) -> KeyLine {
-        KeyLine {
-            section: key.section,
-            key: key.name,
-            r#type: key.kind.words(),
-            unit: key.unit,
-            default: match key.fallback {
-                Fallback::Required => None,
-                Fallback::Is(text) | Fallback::Otherwise(text) => Some(text),
-            },
-            required: key.fallback == Fallback::Required,
-            used_with: key.used.map_or(Vec::new(), |(_, choices)| choices.to_vec()),
-            meaning: key.doc,
-        }
-    }
-}
-
-fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
-    let entry = match name {
-        Some(name) => method(methods, name),
-        None => methods.first().copied(),
-    };
-    let Some(entry) = entry else { return matching_keys(name.unwrap_or_default(), common, methods) };
-    let lines: Vec<KeyLine> = entry.vocabulary.keys.keys().map(KeyLine::of).collect();
-    if common.json {
-        return print_json(&lines);
-    }
-    let sections = std::iter::once(("", "at the top of the file")).chain(SECTIONS);
-    let sections = sections.filter(|(section, _)| entry.vocabulary.keys.section(section).next().is_some());
-    let tables: Vec<String> = sections
-        .map(|(section, holds)| {
-            let title = if section.is_empty() { holds.to_owned() } else { format!("[{section}]: {holds}") };
-            let with = |line: &KeyLine| match line.used_with.as_slice() {
-                [] => String::new(),
-                choices => format!(" Used with {}.", choices.join(", ")),
-            };
-            let table = FrameBuilder::of(lines.iter().filter(|line| line.section == section))
-                .text("key", |line| line.key)
-                .text("value", |line| &line.r#type)
-                .text("unit", |line| line.unit)
-                .text("default", |line| line.default.unwrap_or("required"))
-                .text("meaning", |line| format!("{}{}", line.meaning, with(line)))
-                .table("keys", title);
-            terminal::render(&table)
-        })
-        .collect();
-    print(&tables.join("\n"))
 }

@@ -1,21 +1,27 @@
-//! `stripmine compare`: runs one scene in two configurations and compares the trajectories.
+//! `stripmine compare`: runs one scene in two configurations and compares the trajectories and the means.
+
+mod means;
 
 use crate::console::{CommandFailure, Common, print, print_json};
 use crate::report::FrameBuilder;
 use crate::report::terminal;
 use clap::Args;
+use means::{ComparedMean, compared_means, means_table};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
+use stripmine_physics::averages::{AveragedRows, RunAverages};
 use stripmine_physics::domain::Domain;
-use stripmine_physics::method::{Methods, Prepared, Simulation, StartPurpose, Until, load};
+use stripmine_physics::method::{
+    Every, MethodEntry, Methods, PhysicsFailure, Prepared, Simulation, StartPurpose, Until, load,
+};
 use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::particles::Particles;
 use stripmine_physics::scene::SceneErrors;
 
-/// Compares two configurations of a scene bit by bit
+/// Compares two configurations of a scene bit by bit, and their means
 ///
-/// Runs the scene in both, and prints the first difference and its growth over time.
+/// Runs the scene in both; prints the first difference, its growth over time, and the means with the difference over its error.
 #[derive(Args)]
 pub(super) struct CompareVerb {
     /// Preset name or scene file
@@ -30,6 +36,9 @@ pub(super) struct CompareVerb {
 
 /// Exponent of the shortest interval: samples are taken at the start and after 2⁻¹⁶, 2⁻¹⁵, … 1 of the run.
 const PARTS: u32 = 16;
+
+/// Relative difference of times up to which two samples are at the same time.
+const EVEN: f64 = 1e-9;
 
 /// Differences of the two runs at one time.
 #[derive(Serialize)]
@@ -57,36 +66,77 @@ struct Comparison {
     /// Index of the first sample with a difference.
     first_difference: Option<usize>,
     looks: Vec<TrajectoryDifference>,
+    means: Vec<ComparedMean>,
+}
+
+/// Configuration in progress, with rows of observables as a run has them.
+struct ComparedRun {
+    simulation: Box<dyn Simulation>,
+    until: Until,
+    rows: AveragedRows,
+    every: Every,
+    /// Moment of the next row.
+    due: Option<Until>,
+}
+
+impl ComparedRun {
+    fn start(prepared: &Prepared, entry: &MethodEntry) -> Result<ComparedRun, PhysicsFailure> {
+        let (mut simulation, every) = (prepared.start(StartPurpose::Run)?, prepared.schedule.rows);
+        let mut rows = AveragedRows::new(entry.quantities);
+        rows.add(&simulation.row());
+        let due = every.next(&simulation.clock());
+        Ok(ComparedRun { simulation, until: prepared.schedule.until, rows, every, due })
+    }
+
+    /// Advances to a moment, and records the rows on the way.
+    fn advance(&mut self, moment: Until) -> Result<(), PhysicsFailure> {
+        while !moment.has_been_reached(&self.simulation.clock()) {
+            let moments: Vec<Until> = self.due.into_iter().chain([moment]).collect();
+            self.simulation.advance(&moments, &AtomicBool::new(false))?;
+            let clock = self.simulation.clock();
+            if self.due.is_some_and(|due| due.has_been_reached(&clock)) {
+                self.rows.add(&self.simulation.row());
+                self.due = self.every.next(&clock);
+            }
+        }
+        Ok(())
+    }
 }
 
 impl CompareVerb {
     pub(super) fn run(&self, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
-        let read = |more: &[String]| -> Result<Prepared, CommandFailure> {
+        let read = |more: &[String]| -> Result<(Prepared, &'static MethodEntry), CommandFailure> {
             let overrides: Vec<String> = self.overrides.iter().chain(more).cloned().collect();
             let read = load(&self.scene, &overrides, methods);
-            let (prepared, _) = read.map_err(|mistakes| mistakes_of_against(mistakes, more))?;
-            Ok(prepared)
+            Ok(read.map_err(|mistakes| mistakes_of_against(mistakes, more))?)
         };
-        let (prepared, against) = (read(&[])?, read(&self.against)?);
+        let ((prepared, entry), (against, entry_against)) = (read(&[])?, read(&self.against)?);
         prepared.memory.clone().with_concurrent(&against.memory).fits(&self.scene)?;
-        let (mut first, mut second) = (prepared.start(StartPurpose::Run)?, against.start(StartPurpose::Run)?);
-        let (until, domain) = (prepared.schedule.until, prepared.domain);
-        let mut looks = vec![trajectory_difference(&*first, &*second, &domain)];
+        let mut first = ComparedRun::start(&prepared, entry)?;
+        let mut second = ComparedRun::start(&against, entry_against)?;
+        let domain = prepared.domain;
+        let mut looks = vec![trajectory_difference(&*first.simulation, &*second.simulation, &domain)];
         for part in (0..=PARTS).rev() {
-            let moment = fraction_of_run(until, part);
-            if moment.has_been_reached(&first.clock()) {
+            let moment = fraction_of_run(first.until, part);
+            if moment.has_been_reached(&first.simulation.clock()) {
                 continue;
             }
-            first.advance(&[moment], &AtomicBool::new(false))?;
-            second.advance(&[moment], &AtomicBool::new(false))?;
-            looks.push(trajectory_difference(&*first, &*second, &domain));
+            first.advance(moment)?;
+            second.advance(fraction_of_run(second.until, part))?;
+            looks.push(trajectory_difference(&*first.simulation, &*second.simulation, &domain));
         }
+        let ends = [&first, &second].map(|run| run.simulation.clock().time);
         let first_difference = looks.iter().position(|look| !look.same_bits);
-        let comparison = Comparison { same_bits: first_difference.is_none(), first_difference, looks };
-        match common.json {
-            true => print_json(&comparison),
-            false => print(&comparison_text(&self.scene, &comparison)),
+        let means = compared_means([&first, &second].map(|run| RunAverages::of(&run.rows)));
+        let comparison = Comparison { same_bits: first_difference.is_none(), first_difference, looks, means };
+        if common.json {
+            return print_json(&comparison);
         }
+        print(&comparison_text(&self.scene, &comparison, ends))?;
+        if comparison.same_bits {
+            return Ok(());
+        }
+        print(&format!("\n{}", terminal::render(&means_table(&comparison.means))))
     }
 }
 
@@ -163,7 +213,7 @@ fn first_difference(seen: &TrajectoryDifference) -> String {
     }
 }
 
-fn comparison_text(scene: &str, comparison: &Comparison) -> String {
+fn comparison_text(scene: &str, comparison: &Comparison, ends: [f64; 2]) -> String {
     let looks = &comparison.looks;
     let answer = match comparison.first_difference {
         None => format!("{scene}: same bits in all {} samples", looks.len()),
@@ -180,6 +230,13 @@ fn comparison_text(scene: &str, comparison: &Comparison) -> String {
     };
     let has_events = looks.iter().any(|look| look.events > 0);
     let unit = if has_events { "events" } else { "steps" };
+    let is_later = (ends[1] - ends[0]).abs() > EVEN * ends[0].abs();
+    let later = is_later.then(|| {
+        let [first, second] = ends.map(|time| significant(time, 6));
+        format!(
+            "The second configuration ends at time {second}, not {first}: set the length of the run by time."
+        )
+    });
     terminal::render(
         &FrameBuilder::of(looks)
             .count(unit, |look| if has_events { look.events } else { look.steps })
@@ -192,6 +249,7 @@ fn comparison_text(scene: &str, comparison: &Comparison) -> String {
             .table("comparison", answer)
             .note(
                 "Largest differences over all particles; `particle` has the largest difference of positions.",
-            ),
+            )
+            .notes(later),
     )
 }
