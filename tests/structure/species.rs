@@ -91,16 +91,10 @@ fn partial_functions_match_naive_sums() {
             );
         }
         let [of_a, of_b] = [&a, &b].map(|own| values("S(k)", &setting, &Particles::new(own.clone())));
-        // Waves depend on the mean diameter, which is that of all discs only where all are equal.
-        if which != "mixture 1:12" {
-            let near = |found: &[f64], alone: &[f64]| {
-                found.iter().zip(alone).all(|(found, alone)| (found - alone).abs() < 1e-9)
-            };
-            assert!(
-                near(&partial[..whole.len()], &of_a) && near(&partial[2 * whole.len()..], &of_b),
-                "{which}"
-            );
-        }
+        let near = |found: &[f64], alone: &[f64]| {
+            found.iter().zip(alone).all(|(found, alone)| (found - alone).abs() < 1e-9)
+        };
+        assert!(near(&partial[..whole.len()], &of_a) && near(&partial[2 * whole.len()..], &of_b), "{which}");
     }
 }
 
@@ -111,8 +105,9 @@ fn partial_correlations_of_ideal_gases_are_one() {
     for which in ["periodic", "closed", "closed mixture", "channel"] {
         let mut random = Stream::new(10, RandomPurpose::Test, 0);
         let mut means: Vec<f64> = vec![];
-        const MANY: usize = 300;
-        for _ in 0..MANY {
+        // Tables between wall discs take long.
+        let (many, most) = if which == "channel" { (10, 0.06) } else { (200, 0.02) };
+        for _ in 0..many {
             let (setting, discs) = in_two_species(match which {
                 "periodic" => ideal(&mut random, [12.0, 20.0], [true; 2], 120),
                 "closed" => ideal(&mut random, [12.0, 9.0], [false; 2], 120),
@@ -121,13 +116,16 @@ fn partial_correlations_of_ideal_gases_are_one() {
             });
             let g = values("g_ab(r)", &setting, &discs);
             means.resize(g.len(), 0.0);
-            means.iter_mut().zip(g).for_each(|(mean, g)| *mean += g / MANY as f64);
+            means.iter_mut().zip(g).for_each(|(mean, g)| *mean += g / f64::from(many));
         }
-        for pair in means.chunks(means.len() / 3) {
-            // Half of the bins at a time: few pairs fall into a single one.
-            for half in pair.chunks(pair.len() / 2).take(2) {
-                let mean = half.iter().sum::<f64>() / half.len() as f64;
-                assert!((mean - 1.0).abs() < 0.02, "{which}: {mean}");
+        let bins = means.len() / 3;
+        for pair in means.chunks(bins) {
+            for half in [0..bins / 2, bins / 2..bins] {
+                // By the areas of the rings.
+                let areas = || half.clone().map(|bin| (2 * bin + 1) as f64);
+                let sum: f64 = half.clone().zip(areas()).map(|(bin, area)| pair[bin] * area).sum();
+                let mean = sum / areas().sum::<f64>();
+                assert!((mean - 1.0).abs() < most, "{which}: {mean}");
             }
         }
     }
@@ -221,7 +219,7 @@ fn runs_write_functions_by_species() {
         let sum = (90.0 * 89.0 * aa + 2.0 * 90.0 * 30.0 * ab + 30.0 * 29.0 * bb) / (120.0 * 119.0);
         assert!((sum - whole).abs() < 1e-9, "{bin}: {sum} {whole}");
     }
-    assert_eq!(partial[30][..3], [1.0, 2.0, 0.1]);
+    assert!(partial[30][..2] == [1.0, 2.0] && (partial[30][2] - 0.1).abs() < 1e-12, "{:?}", partial[30]);
     let (msd, by_species) =
         (rows::<3>(folder.path(), "mixed", "msd"), rows::<4>(folder.path(), "mixed", "msd_a"));
     assert_eq!(by_species.len(), 2 * msd.len());
@@ -293,7 +291,6 @@ fn start_files_have_species() {
         let rows: Vec<[f64; 6]> = super::rows(folder.path(), &out, "S_ab(k)");
         found.push(rows.iter().take(20).map(|row| row[4]).collect::<Vec<f64>>());
     }
-    // At rest: nine discs of a quarter of the columns, by hand S_aa of the first wave is 0 for a full lattice less the others.
     assert_eq!(found[0], found[1]);
     assert!(found[2][..5].iter().zip(&found[0]).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
 }
