@@ -2,7 +2,7 @@
 
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::{CutOff, PairPotential};
-use stripmine_kernels::law::tabulated::{TableError, Tabulated};
+use stripmine_kernels::law::tabulated::{Tabulated, TabulatedError};
 use stripmine_kernels::sweep::pair::{Pair, PairBody};
 
 /// Rows of Lennard-Jones with ε = σ = 1 at some distances.
@@ -88,11 +88,11 @@ fn unfit_rows_are_named() {
         change(&mut points);
         Tabulated::new(&points).unwrap_err()
     };
-    assert_eq!(refused(|points| points.truncate(4)), TableError::TooFew(4));
+    assert_eq!(refused(|points| points.truncate(4)), TabulatedError::TooFew(4));
     let swapped = refused(|points| points.swap(3, 4));
-    assert!(matches!(swapped, TableError::NotIncreasing { row: 4, .. }), "{swapped}");
-    assert!(matches!(refused(|points| points[7][1] = f64::NAN), TableError::NotFinite { row: 7, .. }));
-    assert!(matches!(refused(|points| points[0][0] = -1.0), TableError::NotFinite { row: 0, .. }));
+    assert!(matches!(swapped, TabulatedError::NotIncreasing { row: 4, .. }), "{swapped}");
+    assert!(matches!(refused(|points| points[7][1] = f64::NAN), TabulatedError::NotFinite { row: 7, .. }));
+    assert!(matches!(refused(|points| points[0][0] = -1.0), TabulatedError::NotFinite { row: 0, .. }));
     let close = refused(|points| points[5][0] = points[4][0] + 1e-9);
-    assert!(matches!(close, TableError::TooUneven { row: 5, .. }), "{close}");
+    assert!(matches!(close, TabulatedError::TooUneven { row: 5, .. }), "{close}");
 }

@@ -106,7 +106,7 @@ fn partial_correlations_of_ideal_gases_are_one() {
         let mut random = Stream::new(10, RandomPurpose::Test, 0);
         let mut means: Vec<f64> = vec![];
         // Tables between wall discs take long.
-        let (many, most) = if which == "channel" { (10, 0.06) } else { (200, 0.02) };
+        let (many, most) = if which == "channel" { (20, 0.08) } else { (200, 0.02) };
         for _ in 0..many {
             let (setting, discs) = in_two_species(match which {
                 "periodic" => ideal(&mut random, [12.0, 20.0], [true; 2], 120),

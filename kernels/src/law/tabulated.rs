@@ -31,7 +31,7 @@ const EQUAL: f64 = 1e-6;
 /// let potential = Tabulated::new(&rows)?;
 /// assert!((potential.energy(0.9) - 1.21).abs() < 1e-14 && (potential.force(0.9) - 2.2).abs() < 1e-13);
 /// assert!((potential.curvature(0.9) - 2.0).abs() < 1e-12 && potential.energy(3.0) == 0.0);
-/// # Ok::<(), stripmine_kernels::law::tabulated::TableError>(())
+/// # Ok::<(), stripmine_kernels::law::tabulated::TabulatedError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
@@ -46,7 +46,7 @@ pub struct Tabulated {
 
 /// Reason why rows are no potential; rows are numbered from 0.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum TableError {
+pub enum TabulatedError {
     /// Too few rows.
     #[error("the table has {0} rows; expected at least 5")]
     TooFew(usize),
@@ -96,19 +96,19 @@ impl Tabulated {
     /// Potential through rows of distance (length) and energy, by rising distance.
     ///
     /// # Errors
-    /// [`TableError`] names the first row that does not fit.
-    pub fn new(rows: &[[f64; 2]]) -> Result<Tabulated, TableError> {
+    /// [`TabulatedError`] names the first row that does not fit.
+    pub fn new(rows: &[[f64; 2]]) -> Result<Tabulated, TabulatedError> {
         if rows.len() < FEWEST {
-            return Err(TableError::TooFew(rows.len()));
+            return Err(TabulatedError::TooFew(rows.len()));
         }
         for (row, &[r, energy]) in rows.iter().enumerate() {
             if !(r.is_finite() && energy.is_finite() && r >= 0.0) {
-                return Err(TableError::NotFinite { row, r, energy });
+                return Err(TabulatedError::NotFinite { row, r, energy });
             }
             if let Some(&[before, _]) = row.checked_sub(1).map(|before| &rows[before])
                 && r <= before
             {
-                return Err(TableError::NotIncreasing { row, r, before });
+                return Err(TabulatedError::NotIncreasing { row, r, before });
             }
         }
         let ends = [rows[0][0], rows[rows.len() - 1][0]];
@@ -120,7 +120,7 @@ impl Tabulated {
         let row = (2..rows.len()).fold(1, |least, row| if gap(row) < gap(least) { row } else { least });
         let intervals = if is_even { rows.len() - 1 } else { (length / gap(row)).ceil() as usize };
         if intervals > MOST {
-            return Err(TableError::TooUneven { row, gap: gap(row), length });
+            return Err(TabulatedError::TooUneven { row, gap: gap(row), length });
         }
         let last = rows[rows.len() - 1][1];
         let shifted: Vec<[f64; 2]> = rows.iter().map(|[r, energy]| [*r, energy - last]).collect();

@@ -8,7 +8,7 @@ use crate::scene::path_beside;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use stripmine_kernels::law::potential::PairPotential;
-use stripmine_kernels::law::tabulated::{TableError, Tabulated};
+use stripmine_kernels::law::tabulated::{Tabulated, TabulatedError};
 
 /// Longest table (bytes).
 const LONGEST: u64 = 1 << 26;
@@ -49,7 +49,7 @@ enum PairTableMistake {
     #[error("the row has {found} fields; expected {expected}")]
     Fields { found: usize, expected: &'static str },
     #[error(transparent)]
-    Rows(TableError),
+    Rows(TabulatedError),
     #[error(
         "F = {stated}, but -dU/dr of the rows is {}; expected a difference of at most {}: check unit and sign of F, remove its column, or give \
          more rows there", significant(*found, 5), significant(*most, 3)
@@ -97,10 +97,10 @@ impl PairTable {
         let points: Vec<[f64; 2]> = rows.iter().map(|row| [row.r, row.energy]).collect();
         let potential = Tabulated::new(&points).map_err(|reason| {
             let row = match reason {
-                TableError::TooFew(_) => None,
-                TableError::NotFinite { row, .. }
-                | TableError::NotIncreasing { row, .. }
-                | TableError::TooUneven { row, .. } => rows.get(row),
+                TabulatedError::TooFew(_) => None,
+                TabulatedError::NotFinite { row, .. }
+                | TabulatedError::NotIncreasing { row, .. }
+                | TabulatedError::TooUneven { row, .. } => rows.get(row),
             };
             wrong(row.map(|row| row.line), PairTableMistake::Rows(reason))
         })?;
