@@ -27,6 +27,7 @@ fn frame(step: u64) -> ParticleFrame {
     let grain = Particle {
         id: 7,
         kind: ParticleKind::Grain,
+        species: 0,
         position: [0.1 + 0.2, -0.0, 0.0],
         velocity: [5e-324, -f64::MAX, 0.0],
         angle: 0.0,

@@ -273,6 +273,7 @@ fn pressure_agrees_with_the_formula() {
         let discs = (0..60).map(|id| Particle {
             id,
             kind: if id % 7 == 0 { ParticleKind::Wall } else { ParticleKind::Grain },
+            species: 0,
             position: in_space([2.5 + spread(7.0), 6.5 + spread(9.0)]),
             velocity: in_space([spread(4.0), spread(4.0)]),
             angle: 0.0,
@@ -321,6 +322,7 @@ fn temperatures_count_the_degrees_of_freedom() {
     let disc = |id, position, velocity, mass| Particle {
         id,
         kind: ParticleKind::Grain,
+        species: 0,
         position: in_space(position),
         velocity: in_space(velocity),
         angle: 0.0,

@@ -128,11 +128,12 @@ fn cells_of_the_paper_can_be_set() {
 }
 
 /// Keys that no preset and no scene of the gallery sets, each with its purpose.
-const NOT_SHOWN: [(&str, &str); 40] = [
+const NOT_SHOWN: [(&str, &str); 43] = [
     ("integrator.damping", "the friction of the paper's integrator, which the item of energies varies"),
     ("integrator.on_long_step", "a run continues with rare too-fast discs, which thermo.csv counts"),
     ("integrator.tolerance", "the default of adaptive steps is accurate to rounding"),
     ("law.contact_arm", "contacts as in LAMMPS, for comparison"),
+    ("law.file", "a pair potential of the user, which is a file of its own"),
     ("law.gravitational_constant", "units in which G is not 1"),
     ("law.inertia", "spheres that move in a plane; studies of stability vary it"),
     ("law.max_penetration", "soft contacts; studies of stability vary it"),
@@ -149,6 +150,8 @@ const NOT_SHOWN: [(&str, &str); 40] = [
     ("output.lammps_data", "a run that LAMMPS continues"),
     ("output.lammps_dump", "for programs that read dumps"),
     ("output.losses", "no table where many particles may be lost"),
+    ("output.structure_bins", "wider or narrower bins of g(r)"),
+    ("output.structure_range", "pairs farther apart than four diameters"),
     ("output.structure_share", "all rows and snapshots of a small system"),
     ("output.trajectory", "no text if another format is written"),
     ("particles.exact_temperature", "the temperature of a small start to all digits"),

@@ -9,7 +9,7 @@ use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::granular::Contact;
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::CutOff;
-use stripmine_kernels::law::{Axis, Env, Law, ParticleField, ParticleSum, StatedEnv, check};
+use stripmine_kernels::law::{Axis, Env, Law, LawTable, ParticleField, ParticleSum, StatedEnv, check};
 use stripmine_kernels::sweep::pair::Pair;
 use stripmine_kernels::{Execution, InstructionSet};
 use support::{CONTACT, Case, System, equal, random_pairs, varying};
@@ -157,6 +157,9 @@ impl Env<3> for &InSpace {
     }
     fn uniform(self, value: f64) -> f64 {
         value
+    }
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: f64) -> [f64; N] {
+        table.numbers(columns, number)
     }
     fn none(self, predicate: bool) -> bool {
         !predicate

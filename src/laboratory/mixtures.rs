@@ -91,6 +91,7 @@ mod tests {
         Particle {
             id: 1,
             kind: ParticleKind::Grain,
+            species: 0,
             position: [x, y, 0.0],
             velocity: [0.0; 3],
             angle: 0.0,

@@ -131,6 +131,7 @@ mod tests {
         let disc = |(id, position)| Particle {
             id,
             kind: ParticleKind::Grain,
+            species: 0,
             position: in_space(position),
             velocity: [f64::from(id), 0.0, 0.0],
             angle: 0.0,

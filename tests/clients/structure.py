@@ -1,4 +1,4 @@
-"""Compares the structure functions of runs with `freud`, `MDAnalysis` and naive sums, in boxes of every kind.
+"""Compares the structure functions of runs, also those by species, with `freud`, `MDAnalysis` and naive sums, in boxes of every kind.
 
     python structure.py STRIPMINE
 
@@ -31,6 +31,10 @@ BOXES = {
                 "particles.count": 50, "particles.second_radius": 1.0, "particles.second_share": 0.2},
     ),
     "mixture 1:12": ("mixture.toml", {}),
+    "binary": (
+        "hard-disks",
+        HARD | {"domain.sides": "[24.0, 20.0]", "particles.count": 160, "particles.second_radius": 0.8, "particles.second_share": 0.3},
+    ),
     "5 particles": ("hard-disks", HARD | {"domain.sides": "[9.0, 9.0]", "particles.count": 5}),
     "channel": (
         "pipe-small",
@@ -38,9 +42,10 @@ BOXES = {
     ),
     "bath": ("langevin-dense", {"run.time": 32.0, "run.snapshot_every": 100, "run.thermo_every": 100}),
 }
+OF_TWO = ("binary", "mixture 1:12")  # boxes whose functions by species are compared
 FUNCTIONS = {
     "g(r)": 5e-3, "S(k)": 1e-9, "coordination": 1e-9, "psi6": 1e-4, "velocities": 1e-9, "density(x)": 1e-9, "density(y)": 1e-9,
-    "flow(x)": 1e-9, "flow(y)": 1e-9, "temperature(x)": 1e-9, "temperature(y)": 1e-9, "msd": 1e-4, "vacf": 1e-9,
+    "g_ab(r)": 5e-3, "S_ab(k)": 1e-9, "coordination_ab": 1e-9, "msd_a": 1e-4, "flow(x)": 1e-9, "flow(y)": 1e-9, "temperature(x)": 1e-9, "temperature(y)": 1e-9, "msd": 1e-4, "vacf": 1e-9,
 }
 
 
@@ -193,6 +198,51 @@ class Box:
             return join(ours[:, 1] * areas) / join(areas), join(counts) / (len(self.counted) * pairs * join(ideal))
         return ours[:, 1], counts / (len(self.counted) * pairs * ideal)
 
+    def species(self):
+        """Members of the two species: the smaller and the larger discs."""
+        small = self.radius == self.radius.min()
+        return [small, ~small]
+
+    def partial_correlations(self, ours):
+        np, width = self.np, ours[1, 2] - ours[0, 2]
+        bins = round(ours[:, 2].max() / width + 0.5)
+        edges, species, theirs = np.arange(bins + 1) * width, self.species(), []
+        for a, b in ((0, 0), (0, 1), (1, 1)):
+            one, other = species[a], species[b]
+            counts = np.zeros(bins)
+            for places in self.of_grains("at"):
+                if edges[-1] < 0.499 * min(self.sides):
+                    wrapped = lambda members: self.freud_box().wrap(self.shifted(places[members]))
+                    rdf = self.freud.density.RDF(bins, edges[-1])
+                    rdf.compute((self.freud_box(), wrapped(one)), query_points=None if a == b else wrapped(other))
+                    counts += rdf.bin_counts / (2 if a == b else 1)
+                else:
+                    distances = np.hypot(*np.moveaxis(self.ways(places), 2, 0))[np.ix_(one, other)]
+                    distances = distances[np.triu_indices(len(distances), 1)] if a == b else distances.ravel()
+                    counts += np.histogram(distances, edges)[0]
+            pairs = one.sum() * (one.sum() - 1) / 2 if a == b else one.sum() * other.sum()
+            theirs.append(counts / (len(self.counted) * pairs * self.ideal(edges)))
+        return ours[:, 3], np.concatenate(theirs)
+
+    def partial_factors(self, ours):
+        np, species = self.np, self.species()
+
+        def of(a, b, k):
+            sums = [[np.exp(1j * places[species[it]] @ k).sum() for places in self.of_grains("at")] for it in (a, b)]
+            norm = np.sqrt(species[a].sum() * species[b].sum())
+            return np.mean([(x * np.conj(y)).real / norm for x, y in zip(*sums)])
+
+        return ours[:, 4], np.array([of(int(row[0]) - 1, int(row[1]) - 1, row[2:4]) for row in ours])
+
+    def partial_coordination(self, ours):
+        np, species = self.np, self.species()
+        reach, found = 1.5 * (self.radius[:, None] + self.radius[None, :]), np.zeros((2, 2))
+        for places in self.of_grains("at"):
+            near = np.hypot(*np.moveaxis(self.ways(places), 2, 0)) < reach
+            np.fill_diagonal(near, False)
+            found += [[near[np.ix_(a, b)].sum() / a.sum() for b in species] for a in species]
+        return ours[:, 2], found.ravel() / len(self.counted)
+
     def above_floor(self, ours, counts, edges):
         """Pair density of discs with their own heights and uniform positions along the floor: that of the difference of two uniform numbers."""
         np, pairs = self.np, self.np.zeros(len(ours))
@@ -293,7 +343,7 @@ class Box:
             found.append(np.mean(blocks))
         return ours[:, 1], np.array(found)
 
-    def displacements(self, ours, folder):
+    def displacements(self, ours, folder, members=slice(None)):
         import gsd.hoomd
         import MDAnalysis
         from MDAnalysis.analysis.msd import EinsteinMSD
@@ -301,9 +351,9 @@ class Box:
         np = self.np
         with gsd.hoomd.open(folder / "trajectory.gsd") as trajectory:
             of = lambda frame: frame.particles.position[:, :2] + frame.particles.image[:, :2] * frame.configuration.box[:2]
-            places = np.array([of(frame)[self.grains] for frame in trajectory[1 : LOOKS + 1]])
+            places = np.array([of(frame)[self.grains][members] for frame in trajectory[1 : LOOKS + 1]])
         places = np.concatenate([places, np.zeros((*places.shape[:2], 1))], axis=2)
-        universe = MDAnalysis.Universe.empty(len(self.radius), trajectory=True)
+        universe = MDAnalysis.Universe.empty(places.shape[1], trajectory=True)
         universe.load_new(places)
 
         def mean(lag, first):
@@ -321,12 +371,13 @@ class Box:
         return self.over_lags(ours, of)
 
 
-def differences(stripmine, scene, settings, numpy, freud, folder):
+def differences(stripmine, scene, settings, numpy, freud, folder, has_species):
     """Yields the largest difference of each function, relative to its largest value."""
     if scene.endswith(".toml"):
         (folder / scene).write_text(mixture())
         scene = str(folder / scene)
-    names = [name for name in FUNCTIONS if not (name == "S(k)" and "false, false" in str(settings.get("domain.periodic")))]
+    allowed = [name for name in FUNCTIONS if has_species or "_a" not in name]
+    names = [name for name in allowed if not (name == "S(k)" and "false, false" in str(settings.get("domain.periodic")))]
     settings = settings | {"output.structure": json.dumps(names), "output.structure_share": 1000.0, "output.gsd": "true"}
     sets = [part for key, value in settings.items() for part in ("--set", f"{key}={value}")]
     out = folder / "run"
@@ -354,6 +405,15 @@ def differences(stripmine, scene, settings, numpy, freud, folder):
             ours, theirs = box.velocities(ours)
         elif name == "msd":
             ours, theirs = box.displacements(ours, out)
+        elif name == "g_ab(r)":
+            ours, theirs = box.partial_correlations(ours)
+        elif name == "S_ab(k)":
+            ours, theirs = box.partial_factors(ours)
+        elif name == "coordination_ab":
+            ours, theirs = box.partial_coordination(ours)
+        elif name == "msd_a":
+            each = [box.displacements(ours[ours[:, 0] == it + 1][:, 1:], out, members) for it, members in enumerate(box.species())]
+            ours, theirs = (numpy.concatenate(parts) for parts in zip(*each))
         elif name == "vacf":
             ours, theirs = box.products(ours)
         else:
@@ -375,7 +435,7 @@ def main(stripmine):
     wrong, table = 0, {}
     for name, (scene, settings) in BOXES.items():
         with tempfile.TemporaryDirectory() as folder:
-            table[name] = differences(stripmine, scene, settings, numpy, freud, Path(folder))
+            table[name] = differences(stripmine, scene, settings, numpy, freud, Path(folder), name in OF_TWO)
         for function, most in FUNCTIONS.items():
             most = 2e-2 if function == "g(r)" and name in ("closed", "channel") else most
             off = table[name].get(function)

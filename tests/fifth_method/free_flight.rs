@@ -148,6 +148,7 @@ impl Flight {
             domain: self.domain(),
             seed: self.start.seed(),
             start_file: self.start.file().map(Path::to_owned),
+            law_file: None,
             facts: vec![Fact::new("discs", self.made.len(), "discs", self.made.len().to_string())],
             warnings: vec![],
             choices: vec![],

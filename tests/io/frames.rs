@@ -12,10 +12,20 @@ fn frames(text: &str) -> Result<Vec<ParticleFrame>, XyzReadError> {
 fn bits(frame: &ParticleFrame) -> Vec<u64> {
     let ParticleFrame { particles, cell, origin, periodic, time, step, seed, .. } = frame;
     let disc = |disc: &Particle| {
-        let Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } =
-            *disc;
+        let Particle {
+            id,
+            kind,
+            species,
+            position: [x, y, z],
+            velocity: [u, v, w],
+            angle,
+            omega,
+            radius,
+            mass,
+        } = *disc;
         let numbers = [x, y, z, u, v, w, angle, omega, radius, mass].map(f64::to_bits);
-        [vec![u64::from(id), u64::from(kind == ParticleKind::Wall)], numbers.to_vec()].concat()
+        [vec![u64::from(id), u64::from(kind == ParticleKind::Wall), u64::from(species)], numbers.to_vec()]
+            .concat()
     };
     let numbers = [cell[0], cell[1], origin[0], origin[1], *time].map(f64::to_bits);
     let words = [*step, seed.unwrap_or(0), u64::from(seed.is_some())];
@@ -82,6 +92,7 @@ fn every_bit_of_a_frame_is_read_back() {
     let discs = (1..=2000).map(|id| Particle {
         id,
         kind: if id > 1900 { ParticleKind::Wall } else { ParticleKind::Grain },
+        species: 0,
         position: [any(), any(), 0.0],
         velocity: [any(), any(), 0.0],
         angle: 0.0,

@@ -39,6 +39,7 @@ fn disc(id: u32, step: u64) -> Particle {
     Particle {
         id,
         kind: if id > 3 { ParticleKind::Wall } else { ParticleKind::Grain },
+        species: 0,
         position: [along, 1.0 / (1.0 + along), 0.0],
         velocity: [-along, 1e-300, 0.0],
         angle: 0.0,

@@ -11,6 +11,7 @@ mod followed;
 mod forces;
 mod open_top;
 mod oracles;
+mod species;
 
 use assert_cmd::cargo::CommandCargoExt;
 use rand::RngExt;
@@ -31,9 +32,10 @@ fn stripmine(folder: &Path, arguments: &[&str]) -> Output {
     command.current_dir(folder).args(arguments).arg("--quiet").output().unwrap()
 }
 
-/// Functions available for hard discs: all that need no forces.
+/// Functions available for hard discs of one species: all that need no forces.
 fn names() -> Vec<&'static str> {
-    NAMES.into_iter().filter(|name| !name.starts_with("stress")).collect()
+    let is_of_species = |name: &str| observable(name).unwrap().species() > 0;
+    NAMES.into_iter().filter(|name| !name.starts_with("stress") && !is_of_species(name)).collect()
 }
 
 /// Runs a scene with all these functions, sampled at every row and snapshot.
@@ -101,7 +103,17 @@ fn ideal_of(
 
 fn disc(id: u32, kind: ParticleKind, [x, y]: [f64; 2], radius: f64) -> Particle {
     let velocity = [1.0, 0.0, 0.0];
-    Particle { id, kind, position: [x, y, 0.0], velocity, angle: 0.0, omega: 0.0, radius, mass: 1.0 }
+    Particle {
+        id,
+        kind,
+        species: 0,
+        position: [x, y, 0.0],
+        velocity,
+        angle: 0.0,
+        omega: 0.0,
+        radius,
+        mass: 1.0,
+    }
 }
 
 /// An ideal gas in a channel between rows of wall discs; the space behind the walls is empty.

@@ -178,7 +178,7 @@ fn motion_agrees_with_all_stored_samples() {
         }
         whole.push(now.to_vec());
         let mut met = 0;
-        motion.add_sample(&now, 0.5 * look as f64, |earlier, place, means| {
+        motion.add_sample(&now, 0.5 * look as f64, &[], |earlier, place, _, means| {
             met += 1;
             assert_eq!(earlier + lags[place], look);
             let pairs = whole[earlier as usize].iter().zip(&now).filter(|(_, later)| !later[0].is_nan());

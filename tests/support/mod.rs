@@ -102,5 +102,15 @@ pub fn arena(cells: [usize; 2], periodic: bool, discs: &[Particle]) -> (Granular
 /// A grain without spin.
 pub fn grain(id: u32, position: [f64; 2], velocity: [f64; 2], radius: f64, mass: f64) -> Particle {
     let (position, velocity) = (in_space(position), in_space(velocity));
-    Particle { id, kind: ParticleKind::Grain, position, velocity, angle: 0.0, omega: 0.0, radius, mass }
+    Particle {
+        id,
+        kind: ParticleKind::Grain,
+        species: 0,
+        position,
+        velocity,
+        angle: 0.0,
+        omega: 0.0,
+        radius,
+        mass,
+    }
 }

@@ -66,6 +66,7 @@
 //! let disc = |id, [x, y]: [f64; 2]| Particle {
 //!     id,
 //!     kind: ParticleKind::Grain,
+//!     species: 0,
 //!     position: in_space([5.0 + x, 4.0 + y]),
 //!     velocity: [0.0; 3],
 //!     angle: 0.0,

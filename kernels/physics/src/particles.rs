@@ -20,6 +20,8 @@ pub struct Particle {
     pub id: u32,
     /// Kind of motion.
     pub kind: ParticleKind,
+    /// Species of a grain at the start, for functions by species; forces do not depend on it.
+    pub species: u8,
     /// Centre (length); the third coordinate is 0 in the plane.
     pub position: [f64; 3],
     /// Velocity (length/time); the third component is 0 in the plane.
@@ -48,7 +50,7 @@ impl Particle {
     /// Particle at rest whose radius and mass are still 0.
     pub(crate) const fn at_rest(id: u32, kind: ParticleKind, position: [f64; 3]) -> Particle {
         let (velocity, angle, omega, radius, mass) = ([0.0; 3], 0.0, 0.0, 0.0, 0.0);
-        Particle { id, kind, position, velocity, angle, omega, radius, mass }
+        Particle { id, kind, species: 0, position, velocity, angle, omega, radius, mass }
     }
 
     /// Position in the plane (length).

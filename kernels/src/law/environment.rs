@@ -1,6 +1,7 @@
 //! Interfaces of a law and of the environment that evaluates it.
 
 use super::quantity::{ParticleField, ParticleSum};
+use super::table::LawTable;
 use crate::isa::Vector;
 
 /// Observations made beside the sums, while the contacts are in registers.
@@ -36,6 +37,9 @@ pub trait Env<const DIM: usize>: Copy {
     fn partner(self, field: ParticleField, partner: Self::Partner) -> Self::V;
     /// Broadcasts a number to all pairs.
     fn uniform(self, value: f64) -> Self::V;
+    /// Loads for each pair numbers of a row of a table, one of each of some columns. Rows are numbered from 1; NaN where the number is
+    /// not positive. A program panics at a number beyond the last row.
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: Self::V) -> [Self::V; N];
     /// True if the predicate is false for all pairs and this execution takes early exits.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
     /// Adds to a sum of the own particle.

@@ -1,5 +1,6 @@
 //! The pair potential of Lennard-Jones, LAN17.
 
+use super::Env;
 use super::potential::PairPotential;
 use crate::isa::Vector;
 
@@ -89,17 +90,20 @@ impl PairPotential for LennardJones {
         4.0 * self.strength * (156.0 * sixth * sixth - 42.0 * sixth) / (distance * distance)
     }
 
+    type Shared<V: Vector> = V;
+
     #[inline(always)]
-    fn swept_force<V: Vector>(&self, uniform: impl Fn(f64) -> V, square: V) -> [V; 2] {
+    fn swept_force<E: Env<2>>(&self, env: E, square: E::V) -> (E::V, E::V) {
+        let uniform = |value: f64| env.uniform(value);
         let inverse = uniform(1.0) / square;
         let ratio = uniform(self.square) * inverse;
         let sixth = ratio * ratio * ratio;
         let repulsion = sixth * (sixth + sixth - uniform(1.0));
-        [uniform(24.0 * self.strength) * repulsion * inverse, sixth]
+        (uniform(24.0 * self.strength) * repulsion * inverse, sixth)
     }
 
     #[inline(always)]
-    fn swept_energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, sixth: V) -> V {
-        uniform(4.0 * self.strength) * (sixth * (sixth - uniform(1.0)))
+    fn swept_energy<E: Env<2>>(&self, env: E, sixth: E::V) -> E::V {
+        env.uniform(4.0 * self.strength) * (sixth * (sixth - env.uniform(1.0)))
     }
 }

@@ -8,8 +8,11 @@ pub mod potential;
 mod quantity;
 pub mod spring;
 mod stated;
+mod table;
+pub mod tabulated;
 pub mod yukawa;
 
 pub use environment::{Env, Law, ObservationRequest};
 pub use quantity::{Axis, ParticleField, ParticleSum};
 pub use stated::{StatedEnv, check};
+pub use table::LawTable;

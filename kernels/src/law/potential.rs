@@ -1,10 +1,10 @@
 //! Pair potentials. Each states its formulas once; cutting off, shifting and sweeping are shared by all.
 
-use super::{Axis::X, Axis::Y, Env, Law, ParticleField, ParticleSum};
+use super::{Axis::X, Axis::Y, Env, Law, LawTable, ParticleField, ParticleSum};
 use crate::isa::Vector;
 
 /// A potential U(r) of two particles: it vanishes at large distance, and grows without bound and ever more steeply at small
-/// distance.
+/// distance. One that does not states its own [`closest`](Self::closest) and [`stiffness`](Self::stiffness).
 ///
 /// [`energy`](Self::energy), [`force`](Self::force) and [`curvature`](Self::curvature) are the textbook formulas, for theory,
 /// checks and tests. [`swept_force`](Self::swept_force) and [`swept_energy`](Self::swept_energy) give the same with the
@@ -17,14 +17,28 @@ pub trait PairPotential: Send + Sync + 'static {
     /// U″ (energy/length²) at a distance (length).
     fn curvature(&self, distance: f64) -> f64;
 
-    /// F/r (energy/length²) from the square of the distance (length²), and a term for [`swept_energy`](Self::swept_energy).
-    fn swept_force<V: Vector>(&self, uniform: impl Fn(f64) -> V, square: V) -> [V; 2]
+    /// Vectors of a sweep that force and energy share.
+    type Shared<V: Vector>: Copy
     where
         Self: Sized;
-    /// U (energy) from the term.
-    fn swept_energy<V: Vector>(&self, uniform: impl Fn(f64) -> V, term: V) -> V
+    /// F/r (energy/length²) from the square of the distance (length²), and vectors for [`swept_energy`](Self::swept_energy).
+    fn swept_force<E: Env<2>>(&self, env: E, square: E::V) -> (E::V, Self::Shared<E::V>)
     where
         Self: Sized;
+    /// U (energy) from these vectors.
+    fn swept_energy<E: Env<2>>(&self, env: E, shared: Self::Shared<E::V>) -> E::V
+    where
+        Self: Sized;
+
+    /// Table that sweeps read.
+    fn table(&self) -> Option<&LawTable> {
+        None
+    }
+
+    /// Largest stiffness |U″| (energy/length²) of a pair at a distance (length) and beyond.
+    fn stiffness(&self, nearest: f64) -> f64 {
+        self.curvature(nearest)
+    }
 
     /// Closest distance (length) in a head-on collision of positive energy; 0 if the potential never reaches that energy.
     fn closest(&self, energy: f64) -> f64 {
@@ -110,7 +124,7 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
         }
         env.section("force");
         let zero = uniform(0.0);
-        let [force, term] = self.potential.swept_force(uniform, square);
+        let (force, shared) = self.potential.swept_force(env, square);
         let strength = E::V::select(within, force, zero);
         env.section("sums");
         for (sum, along) in [(ParticleSum::Force(X), dx), (ParticleSum::Force(Y), dy)] {
@@ -119,7 +133,7 @@ impl<P: PairPotential + Clone> Law<2> for CutOff<P> {
         if env.observes_energy() {
             env.section("energy");
             let share = if E::BOTH_PARTNERS { 1.0 } else { 0.5 };
-            let potential = self.potential.swept_energy(uniform, term) - uniform(self.shift);
+            let potential = self.potential.swept_energy(env, shared) - uniform(self.shift);
             env.energy(E::V::select(within, potential * uniform(share), zero));
             env.virial(E::V::select(within, strength * square * uniform(share), zero));
         }

@@ -6,6 +6,7 @@
 
 use super::environment::{Env, Law};
 use super::quantity::{ParticleField, ParticleSum};
+use super::table::LawTable;
 use crate::isa::{ProgramError, Vector};
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -152,6 +153,10 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
         self.env.uniform(value)
     }
     #[inline(always)]
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: E::V) -> [E::V; N] {
+        self.env.lookup(table, columns, number)
+    }
+    #[inline(always)]
     fn none(self, predicate: <E::V as Vector>::Predicate) -> bool {
         self.env.none(predicate)
     }
@@ -263,6 +268,9 @@ impl<const DIM: usize> Env<DIM> for &LawProbe {
     }
     fn uniform(self, value: f64) -> f64 {
         value
+    }
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: f64) -> [f64; N] {
+        table.numbers(columns, number)
     }
     fn none(self, _: bool) -> bool {
         false // No early exit: the whole law is checked.

@@ -1,5 +1,6 @@
 //! The pair potential of Yukawa: screened charges.
 
+use super::Env;
 use super::potential::PairPotential;
 use crate::isa::Vector;
 
@@ -102,8 +103,11 @@ impl PairPotential for Yukawa {
         self.energy(distance) * (screening * screening + 2.0 * screening * inverse + 2.0 * inverse * inverse)
     }
 
+    type Shared<V: Vector> = V;
+
     #[inline(always)]
-    fn swept_force<V: Vector>(&self, uniform: impl Fn(f64) -> V, square: V) -> [V; 2] {
+    fn swept_force<E: Env<2>>(&self, env: E, square: E::V) -> (E::V, E::V) {
+        let uniform = |value: f64| env.uniform(value);
         let distance = square.sqrt();
         let inverse = uniform(1.0) / distance;
         let part = (uniform(self.diameter) - distance) * uniform(self.part);
@@ -115,11 +119,11 @@ impl PairPotential for Yukawa {
             exponential = exponential * exponential;
         }
         let energy = uniform(self.strength * self.diameter) * inverse * exponential;
-        [energy * (uniform(self.screening) + inverse) * inverse, energy]
+        (energy * (uniform(self.screening) + inverse) * inverse, energy)
     }
 
     #[inline(always)]
-    fn swept_energy<V: Vector>(&self, _: impl Fn(f64) -> V, energy: V) -> V {
+    fn swept_energy<E: Env<2>>(&self, _: E, energy: E::V) -> E::V {
         energy
     }
 }

@@ -3,5 +3,6 @@
 pub mod all_pairs;
 pub mod fast;
 pub mod lattice;
+mod lookup;
 pub mod neighbor_list;
 pub mod pair;

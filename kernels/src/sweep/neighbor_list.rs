@@ -5,7 +5,7 @@
 //! such partners come last, in the order of their numbers.
 
 use crate::backend::Precision;
-use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
+use crate::law::{Env, Law, LawTable, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
 use crate::mask::Mask;
 use crate::sweep::lattice::{LatticeFrame, LatticeShape};
 use std::cell::Cell;
@@ -212,6 +212,10 @@ impl<P: Precision> Env<2> for &ListEnv<'_, P> {
     #[inline]
     fn uniform(self, value: f64) -> P {
         P::from_f64(value)
+    }
+    #[inline]
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: P) -> [P; N] {
+        table.numbers(columns, number.to_f64()).map(P::from_f64)
     }
     #[inline]
     fn none(self, predicate: bool) -> bool {

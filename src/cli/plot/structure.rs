@@ -32,6 +32,13 @@ fn figure(function: &StructureFunction, units: &UnitSystem) -> Option<Figure> {
     let axis = |of: [&str; 2]| axis(of, units);
     let name = observable.file.trim_end_matches(".csv").to_owned();
     let figure = match *observable.over {
+        // Means of species alone have no axis.
+        [.., _] if observable.species() == observable.over.len() => return None,
+        [.., over] if observable.species() > 0 => {
+            let over = if has_waves_of_species(observable) { ["k", "1/length"] } else { over };
+            let chart = Chart::of(axis(over), axis(observable.value));
+            chart.with(series_of_species(function)).figure(name, observable.name.to_owned())
+        }
         [over] => {
             let series = series(function, observable.name, 0, |point| Some(point.over[0]));
             Chart::of(axis(over), axis(observable.value))
@@ -64,6 +71,30 @@ fn figure(function: &StructureFunction, units: &UnitSystem) -> Option<Figure> {
 /// Returns true for functions of wave vectors.
 fn is_of_waves(observable: &StructureObservable) -> bool {
     matches!(observable.seen, SamplingKind::Once { over: FunctionArguments::Waves, .. })
+}
+
+/// Points of each species or pair of species; those of waves for each axis.
+fn series_of_species(function: &StructureFunction) -> impl Iterator<Item = Series> {
+    let species = function.observable.species();
+    let has_waves = has_waves_of_species(function.observable);
+    let axis = move |point: &FunctionPoint| usize::from(has_waves && point.over[species] == 0.0);
+    let is_alike = move |a: &FunctionPoint, b: &FunctionPoint| {
+        a.over[..species] == b.over[..species] && axis(a) == axis(b)
+    };
+    let groups = function.points.chunk_by(is_alike);
+    groups.enumerate().map(move |(hue, points)| {
+        let names: Vec<String> = points[0].over[..species].iter().map(f64::to_string).collect();
+        let along = if has_waves { [" along x", " along y"][axis(&points[0])] } else { "" };
+        let of = StructureFunction { points: points.to_vec(), ..function.clone() };
+        series(&of, &format!("{}{along}", names.join(" and ")), hue, |point| {
+            point.over.get(species + axis(point)).copied()
+        })
+    })
+}
+
+/// Returns true for functions of species and wave vectors.
+fn has_waves_of_species(observable: &StructureObservable) -> bool {
+    observable.over.len() == observable.species() + 2
 }
 
 /// Points of a function that have a coordinate, with their error bars if known.

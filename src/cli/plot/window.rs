@@ -117,6 +117,7 @@ mod tests {
         let particle = |(position, id): (&[f64; 3], u32)| Particle {
             id,
             kind: ParticleKind::Grain,
+            species: 0,
             position: *position,
             velocity: [0.0; 3],
             angle: 0.0,

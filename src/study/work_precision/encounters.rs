@@ -135,6 +135,7 @@ mod tests {
         Particle {
             id,
             kind,
+            species: 0,
             position: in_space([x, 1.0]),
             velocity: in_space(velocity),
             angle: 0.0,

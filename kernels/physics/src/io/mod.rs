@@ -9,7 +9,7 @@ pub mod growing_file;
 pub mod gsd;
 pub mod lammps;
 pub(crate) mod lock;
-mod numbers;
+pub(crate) mod numbers;
 pub(crate) mod open_sinks;
 pub mod output_format;
 pub mod owned_folder;

@@ -9,7 +9,7 @@ use crate::domain::Domain;
 use crate::memory::MemoryForecast;
 use crate::particles::Particles;
 use crate::scene::{MeanTarget, Output, SceneErrors, SceneValues, Vocabulary, Warning};
-use crate::structure::PairForces;
+use crate::structure::{PairForces, StructureSetting};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::PathBuf;
@@ -275,6 +275,8 @@ pub struct Prepared {
     pub seed: Option<u64>,
     /// File that the start was read from.
     pub start_file: Option<PathBuf>,
+    /// File that the pair law was read from, and the digest of its rows.
+    pub law_file: Option<(PathBuf, String)>,
     /// Reported properties of the scene.
     pub facts: Vec<Fact>,
     /// Warnings about settings that seldom work.
@@ -301,6 +303,14 @@ impl Prepared {
     /// The particles at the start.
     pub fn particles(&self) -> &Particles {
         self.model.particles()
+    }
+
+    /// Box and bins of the structure functions.
+    pub(crate) fn structure_setting(&self) -> StructureSetting {
+        let of =
+            if self.model.has_open_top() { StructureSetting::with_open_top } else { StructureSetting::new };
+        let setting = of(self.domain, self.particles());
+        setting.with_bins(self.output.structure_range, self.output.structure_bins)
     }
 
     /// Starts a simulation.

@@ -3,11 +3,13 @@
 use super::entry::{MethodEntry, ObservedQuantity, Prepared, QuantityKind};
 use super::start_temperature::{requested_temperature, start_temperature};
 use super::{hard_disks, langevin, lattice_md, nbody};
+use crate::number::significant;
 use crate::quoted::quoted;
 use crate::scene::{
-    KeyValue, METHOD, MistakeKind, STRUCTURE, SceneError, SceneErrors, SceneValues, TARGET, Vocabulary,
+    KeyValue, METHOD, MistakeKind, STRUCTURE, STRUCTURE_RANGE, SceneError, SceneErrors, SceneValues, TARGET,
+    Vocabulary,
 };
-use crate::structure::{self, SampleData, SamplingKind, StructureObservable, observable};
+use crate::structure::{self, MOST_SPECIES, SampleData, SamplingKind, StructureObservable, observable};
 use crate::words::nearest;
 
 /// Methods that scenes may name.
@@ -81,8 +83,30 @@ fn sampling_memory(prepared: &Prepared) -> u64 {
 
 /// Reason why a requested structure quantity cannot be computed.
 fn missing_precondition(prepared: &Prepared) -> Option<String> {
+    if prepared.output.structure.is_empty() {
+        return None;
+    }
+    let setting = prepared.structure_setting();
+    if let Some(range) = prepared.output.structure_range.filter(|range| *range > setting.longest_reach) {
+        let most = significant(setting.longest_reach, 6);
+        let path = STRUCTURE_RANGE.path();
+        return Some(format!(
+            "`{path}` = {range} is beyond {most}, the largest distance that the box allows"
+        ));
+    }
     let why = |observable: &StructureObservable| match observable.seen {
-        SamplingKind::Once { asks: SampleData::Waves, .. } if prepared.domain.periodic() == [false; 2] => {
+        _ if observable.species() > 0 && setting.species < 2 => {
+            Some("needs two species: particles of two radii, or types in the start file")
+        }
+        _ if observable.species() > 0 && setting.species > MOST_SPECIES => {
+            Some("needs at most four species: the start has more")
+        }
+        SamplingKind::Once { asks: SampleData::DistancesOfSpecies, .. } if setting.has_open_top => {
+            Some("needs a closed or periodic box: this one is open at the top")
+        }
+        SamplingKind::Once { asks: SampleData::Waves | SampleData::WavesOfSpecies, .. }
+            if prepared.domain.periodic() == [false; 2] =>
+        {
             Some("needs a periodic side for its waves")
         }
         SamplingKind::Once { asks: SampleData::Forces, .. } if prepared.model.pair_forces().is_none() => {

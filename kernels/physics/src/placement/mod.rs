@@ -46,6 +46,7 @@ pub fn hexagonal(least: usize, packing_fraction: f64, kt: f64, seed: u64) -> Pac
             discs.push(Particle {
                 id,
                 kind: ParticleKind::Grain,
+                species: 0,
                 position: in_space([
                     (column as f64 + offset) * spacing + length * libm::cos(angle),
                     (row as f64 + 0.5) * row_height + length * libm::sin(angle),

@@ -121,6 +121,7 @@ pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Partic
         discs.push(Particle {
             id,
             kind: ParticleKind::Grain,
+            species: u8::from(second.has(id)),
             position: in_space(position),
             velocity: [0.0; 3],
             angle: 0.0,

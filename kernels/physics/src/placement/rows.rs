@@ -25,6 +25,7 @@ pub(crate) fn wall_row(domain: &Domain, row: &WallRow, first_id: u32) -> Vec<Par
     let disc = |i: u32| Particle {
         id: first_id + i,
         kind: ParticleKind::Wall,
+        species: 0,
         position: in_space(domain.wrapped([domain.origin[0] + (f64::from(i) + row.shift) * spacing, row.y])),
         velocity: [0.0; 3],
         angle: 0.0,

@@ -35,10 +35,13 @@ impl RunIdentity {
     pub(super) fn of(RunJob { prepared, program, .. }: &RunJob<'_>, folder: &Path) -> RunIdentity {
         let discs = digest(prepared.particles());
         let file = prepared.start_file.as_deref();
-        let scene = match file {
-            None => prepared.scene.clone(),
-            Some(file) => with_start_file(&prepared.scene, &path_seen_from_folder(folder, file), &discs),
-        };
+        let scene = with_files(&prepared.scene, |section| {
+            let (file, label, digest) = match (section, &prepared.law_file) {
+                ("[law]", Some((file, digest))) => (file.as_path(), ROWS, digest),
+                _ => (file?, DISCS, &discs),
+            };
+            Some((path_seen_from_folder(folder, file), format!("{label}{digest}")))
+        });
         let file = file.map(|file| file.display().to_string());
         RunIdentity { scene, discs, file, program: Origin::clone(program) }
     }
@@ -68,9 +71,16 @@ impl RunIdentity {
         moment: Clock,
         other_version: bool,
     ) -> Result<Vec<String>, RunError> {
-        // Discs are compared by their digest, so the start file may have moved.
-        let [theirs, ours] = [&checkpoint.scene, &self.scene].map(|scene| without_start_file(scene));
+        // Discs and tables are compared by their digests, so the files may have moved.
+        let [theirs, ours] = [&checkpoint.scene, &self.scene].map(|scene| without_files(scene));
         same_scene(folder, &theirs, &ours)?;
+        let rows = |scene: &String| {
+            scene.lines().find(|line| line.starts_with(ROWS)).unwrap_or("nothing").to_owned()
+        };
+        let [theirs, ours] = [&checkpoint.scene, &self.scene].map(rows);
+        if theirs != ours {
+            return Err(RunError::OtherScene { folder: folder.to_owned(), theirs, ours });
+        }
         let said = |name: &str| checkpoint.origin.get(name).cloned().unwrap_or_default();
         if said("discs") != self.discs {
             return Err(RunError::OtherDiscs {
@@ -123,8 +133,17 @@ fn short(digest: &str) -> String {
 /// SHA-256 of all bits of all discs, in hexadecimal.
 fn digest(particles: &Particles) -> String {
     let mut sum = Sha256::new();
-    for &Particle { id, kind, position: [x, y, z], velocity: [u, v, w], angle, omega, radius, mass } in
-        particles.all()
+    for &Particle {
+        id,
+        kind,
+        species: _,
+        position: [x, y, z],
+        velocity: [u, v, w],
+        angle,
+        omega,
+        radius,
+        mass,
+    } in particles.all()
     {
         sum.update(id.to_le_bytes());
         sum.update([u8::from(kind == ParticleKind::Wall)]);
@@ -156,28 +175,41 @@ pub fn choices_of_the_run(
     otherwise.filter_map(|key| theirs.choice(key).map(|word| format!("{}={word}", key.path()))).collect()
 }
 
-/// Checks, before anything is computed, that the run in a folder, if there is one, has a resolved scene. The discs of a start file are not compared.
+/// Checks, before anything is computed, that the run in a folder, if there is one, has a resolved scene. The contents of files are not compared.
 ///
 /// # Errors
 /// [`RunError::OtherScene`] with the first difference.
 pub fn check_scene_of_folder(scene: &str, folder: &Path) -> Result<(), RunError> {
     // A scene that cannot be read is refused when the run is resumed.
     let Ok(theirs) = regular_file::read(&folder.join(SCENE), LONGEST_SCENE) else { return Ok(()) };
-    let [theirs, ours] = [&String::from_utf8_lossy(&theirs), scene].map(without_start_file);
+    let [theirs, ours] = [&String::from_utf8_lossy(&theirs), scene].map(without_files);
     same_scene(folder, &theirs, &ours)
 }
 
+/// Beginning of a line with the path of a file.
+const FILE: &str = "file = ";
 /// Comment in a run's scene with the digest of its start file's discs.
 const DISCS: &str = "# discs of this file: SHA-256 ";
 
-/// Scene of a run that starts from a file, with the path from the run's folder and the digest of the discs.
-fn with_start_file(scene: &str, file: &Path, discs: &str) -> String {
-    let place = toml::Value::from(file.to_string_lossy().into_owned());
-    let line = |line: &str| match line.starts_with("file = ") {
-        true => format!("file = {place}\n{DISCS}{discs}\n"),
-        false => format!("{line}\n"),
-    };
-    scene.lines().map(line).collect()
+/// Comment in a run's scene with the digest of the rows of its law's table.
+const ROWS: &str = "# rows of this file: SHA-256 ";
+
+/// Scene of a run that reads files: for each section with a file its path from the run's folder, and a comment with the digest of what was read.
+fn with_files(scene: &str, file_of: impl Fn(&str) -> Option<(PathBuf, String)>) -> String {
+    let (mut section, mut text) = ("", String::new());
+    for line in scene.lines() {
+        if line.starts_with('[') {
+            section = line;
+        }
+        match file_of(section).filter(|_| line.starts_with(FILE)) {
+            Some((file, comment)) => {
+                let place = toml::Value::from(file.to_string_lossy().into_owned());
+                text.push_str(&format!("{FILE}{place}\n{comment}\n"));
+            }
+            None => text.push_str(&format!("{line}\n")),
+        }
+    }
+    text
 }
 
 /// Path of a file relative to a folder, if a common folder is at most two levels up, so that both can be moved together; else the absolute path.
@@ -199,13 +231,13 @@ fn path_seen_from_folder(folder: &Path, file: &Path) -> PathBuf {
     }
 }
 
-/// Scene without the path of its start file and the digest.
-fn without_start_file(scene: &str) -> String {
-    let is_other = |line: &&str| !(line.starts_with("file = ") || line.starts_with(DISCS));
+/// Scene without the paths of its files and the digests.
+fn without_files(scene: &str) -> String {
+    let is_other = |line: &&str| ![FILE, DISCS, ROWS].iter().any(|start| line.starts_with(start));
     scene.lines().filter(is_other).flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Refuses a scene that differs from the run's in other keys than duration, output and the path of the start file.
+/// Refuses a scene that differs from the run's in other keys than duration, output and the paths of files.
 ///
 /// # Errors
 /// [`RunError::OtherScene`] with the first difference.
@@ -216,16 +248,17 @@ pub(super) fn same_scene(folder: &Path, theirs: &str, ours: &str) -> Result<(), 
     }
 }
 
-/// Lines of a resolved scene that determine the physics: without duration and output, and with the digest of the start file instead of its path.
+/// Lines of a resolved scene that determine the physics: without duration and output, and with the digest of a file instead of its path.
 pub(super) fn physics(scene: &str) -> Vec<&str> {
-    let knows_discs = scene.lines().any(|line| line.starts_with(DISCS));
+    let all: Vec<&str> = scene.lines().filter(|line| !line.trim().is_empty()).collect();
+    let is_digest = |line: &&str| line.starts_with(DISCS) || line.starts_with(ROWS);
     let mut lines = Vec::new();
     let mut of_run = false;
-    for line in scene.lines().filter(|line| !line.trim().is_empty()) {
+    for (at, &line) in all.iter().enumerate() {
         if line.starts_with('[') {
             of_run = matches!(line.trim(), "[run]" | "[output]");
         }
-        let is_place = knows_discs && line.starts_with("file = ");
+        let is_place = line.starts_with(FILE) && all.get(at + 1).is_some_and(is_digest);
         if !(of_run || is_place) {
             lines.push(line);
         }

@@ -19,7 +19,8 @@ use crate::particles::GrainStates;
 use crate::scene::Output;
 use crate::structure::{
     AveragedFunction, Block, Blocks, FunctionReliability, Headline, MotionHistory, OBSERVABLES, PairForces,
-    SampleData, SamplingKind, StructureObservable, StructureSample, StructureSetting, strides,
+    SampleData, SamplingKind, StructureObservable, StructureSample, StructureSetting, species_numbers,
+    strides,
 };
 use serde::Serialize;
 use std::io::Write as _;
@@ -42,6 +43,8 @@ pub(super) struct StructureSampler {
     motion: Option<(MotionHistory, GrainStates)>,
     /// True if discs are followed across periodic sides.
     follows: bool,
+    /// Species of each grain, if motion by species is sampled.
+    species: Vec<u8>,
     /// Initial numbers of particles and of grains.
     particles: usize,
     grains: usize,
@@ -88,7 +91,7 @@ pub(super) fn requested_observables(
 
 /// Strides of sampled rows and snapshots.
 pub(super) fn sampling_strides(prepared: &Prepared) -> [u64; 2] {
-    let setting = setting_of(prepared);
+    let setting = prepared.structure_setting();
     let asked: Vec<&StructureObservable> = requested_observables(&prepared.output).collect();
     let share = prepared.output.structure_share.unwrap_or(SHARE);
     let schedule = prepared.schedule;
@@ -96,17 +99,11 @@ pub(super) fn sampling_strides(prepared: &Prepared) -> [u64; 2] {
     strides(&asked, &setting, prepared.particles().grain_count(), share, work)
 }
 
-fn setting_of(prepared: &Prepared) -> StructureSetting {
-    let of =
-        if prepared.model.has_open_top() { StructureSetting::with_open_top } else { StructureSetting::new };
-    of(prepared.domain, prepared.particles())
-}
-
 impl StructureSampler {
     /// Empty sums for the observables of a scene.
     pub(super) fn new(prepared: &Prepared) -> StructureSampler {
         let grains = prepared.particles().grains();
-        let setting = setting_of(prepared);
+        let setting = prepared.structure_setting();
         let asked: Vec<&StructureObservable> = requested_observables(&prepared.output).collect();
         let strides = sampling_strides(prepared);
         let spacings = [prepared.schedule.rows, prepared.schedule.snapshots].map(spacing);
@@ -129,6 +126,13 @@ impl StructureSampler {
             forces: prepared.model.pair_forces().filter(|_| meets),
             motion: moves.then(|| (MotionHistory::new(grains.len()), GrainStates::of(grains))),
             follows: prepared.output.follows_motion() && prepared.domain.periodic().contains(&true),
+            species: match asked
+                .iter()
+                .any(|it| matches!(it.seen, SamplingKind::Twice { by_species: true, .. }))
+            {
+                true => species_numbers(grains).0,
+                false => vec![],
+            },
             particles: prepared.particles().len(),
             grains: grains.len(),
         }
@@ -147,6 +151,11 @@ impl StructureSampler {
         };
         let at_same_moments = SPACINGS.map(|name| there.sum(&key(name)).ok()) == self.spacings.map(Some);
         let wrong = |name: &str| format!("its data of the structure ({name}) are not of this scene");
+        // Earlier versions have the default bins.
+        let has_same_bins = BINNING
+            .iter()
+            .zip(self.setting.binning())
+            .all(|(name, number)| there.sum(&key(name)).map_or(true, |before| before == number));
         let is_known =
             |observable: &StructureObservable| at_same_moments && column(observable.name).is_some();
         // Functions of two moments are resumed together or not at all.
@@ -157,7 +166,7 @@ impl StructureSampler {
         for sum in &mut self.sums {
             let name = sum.observable.name;
             let goes_on = match sum.observable.seen {
-                SamplingKind::Once { .. } => is_known(sum.observable),
+                SamplingKind::Once { .. } => has_same_bins && is_known(sum.observable),
                 SamplingKind::Twice { .. } => motion_is_known,
             };
             let Some(values) = column(name).filter(|_| goes_on) else {
@@ -195,7 +204,7 @@ impl StructureSampler {
         if self.motion.is_none() || !self.counts_as_sample(ROWS) {
             return;
         }
-        let StructureSampler { setting, sums, motion, .. } = self;
+        let StructureSampler { setting, sums, motion, species, .. } = self;
         let Some((motion, states)) = motion else { return };
         states.mark_all_lost();
         moment.per_particle.states(states);
@@ -209,13 +218,16 @@ impl StructureSampler {
             return;
         }
         let of = |sum: &ObservableSums| match sum.observable.seen {
-            SamplingKind::Twice { of, .. } => Some(of),
+            SamplingKind::Twice { of, by_species, .. } => Some((of, by_species)),
             SamplingKind::Once { .. } => None,
         };
-        motion.add_sample(states.rows(), moment.time, |look, place, means| {
+        motion.add_sample(states.rows(), moment.time, species, |look, place, own, means| {
             for sum in &mut *sums {
-                if let Some(of) = of(sum) {
-                    sum.blocks.add(look, place, of(means), 1.0);
+                if let Some((of, by_species)) = of(sum)
+                    && by_species == own.is_some()
+                {
+                    let first = own.map_or(0, |own| own * MotionHistory::lags().len());
+                    sum.blocks.add(look, first + place, of(means), 1.0);
                 }
             }
         });
@@ -268,6 +280,8 @@ impl StructureSampler {
         if !self.sums.is_empty() {
             let spacings = SPACINGS.into_iter().zip(self.spacings);
             spacings.for_each(|(name, spacing)| snapshot.add_sum(&key(name), spacing));
+            let binning = BINNING.into_iter().zip(self.setting.binning());
+            binning.for_each(|(name, number)| snapshot.add_sum(&key(name), number));
             let passed = PASSED.into_iter().zip(self.passed);
             passed.for_each(|(name, passed)| snapshot.add_count(&key(name), passed));
         }
@@ -354,7 +368,19 @@ impl StructureSampler {
                 (times, lags, 1)
             }
         };
-        let blocks = sum.blocks.second_half(sum.looks, last);
+        let mut blocks = sum.blocks.second_half(sum.looks, last);
+        let (mut over, mut lags) = (over, lags);
+        if let SamplingKind::Twice { by_species: true, .. } = sum.observable.seen {
+            // Each species has a row of all lags, of which the short ones remain.
+            let (all, species) = (MotionHistory::lags().len(), self.setting.species);
+            let short = |row: &[f64]| row.chunks(all).flat_map(|row| &row[..over.len()]).copied().collect();
+            for block in &mut blocks {
+                (block.means, block.weights) = (short(&block.means), short(&block.weights));
+            }
+            let numbered = |own: usize| over.iter().map(move |lag| [&[own as f64][..], lag].concat());
+            over = (1..=species).flat_map(numbered).collect();
+            lags = lags.repeat(species);
+        }
         let mut function = BlockFunction { over, means: vec![], blocks, lags, length };
         let is_density = sum.observable.is_density_of_places();
         let means = (0..function.over.len()).map_while(|place| {
@@ -380,9 +406,10 @@ fn length(place: &[f64]) -> f64 {
 const ROWS: usize = 0;
 const SNAPSHOTS: usize = 1;
 
-/// Names in checkpoints: the spacings and counts of rows and snapshots, the motion, and its times.
+/// Names in checkpoints: the spacings and counts of rows and snapshots, the bins of distances, the motion, and its times.
 const SPACINGS: [&str; 2] = ["rows", "snapshots"];
 const PASSED: [&str; 2] = ["rows passed", "snapshots passed"];
+const BINNING: [&str; 2] = ["range", "bins"];
 const MOTION: &str = "motion";
 const MOTIONS: [&str; 2] = ["motion first", "motion last"];
 
@@ -403,6 +430,7 @@ fn spacing(every: Every) -> f64 {
 fn width(observable: &StructureObservable, setting: &StructureSetting) -> usize {
     match observable.seen {
         SamplingKind::Once { over, further, .. } => over.places(setting).len() + further,
+        SamplingKind::Twice { by_species: true, .. } => setting.species * MotionHistory::lags().len(),
         SamplingKind::Twice { .. } => MotionHistory::lags().len(),
     }
 }

@@ -73,7 +73,11 @@ define_keys! {
     /// Averages of the structure during a run, for scenes with a box.
     pub(crate) static SUMMED;
     STRUCTURE = "output" "structure", KeyValueKind::Words(&structure::NAMES), "", Is("[]"), ALWAYS,
-        "Structure functions averaged over the second half of the run, each in a file of its own with its error. Samples are snapshots; for msd and vacf they are rows of thermo.csv.";
+        "Structure functions averaged over the second half of the run, each in a file of its own with its error. Samples are snapshots; for msd, msd_a and vacf they are rows of thermo.csv. Functions with a and b are by species: discs of different radius or second_radius, or types of a start file.";
+    STRUCTURE_RANGE = "output" "structure_range", Number(Positive), "length", Otherwise("4 mean diameters, or less as the box allows"), ALWAYS,
+        "Largest distance r of g(r), at most half of a periodic side.";
+    STRUCTURE_BINS = "output" "structure_bins", Whole(1, 1000), "", Otherwise("50 in a mean diameter"), ALWAYS,
+        "Number of bins of g(r) from 0 to the largest distance.";
     STRUCTURE_SHARE = "output" "structure_share", Number(Positive), "", Otherwise("0.05"), ALWAYS,
         "Largest fraction of a run's work for structure functions, by a count of operations. Where samples cost more, only every second, third, … row or snapshot is one. 1000 for all of them.";
 }
@@ -136,6 +140,10 @@ pub struct Output {
     pub(crate) formats: Vec<&'static str>,
     /// Names of the structure functions.
     pub structure: Vec<String>,
+    /// Largest distance of pairs in structure functions (length).
+    pub(crate) structure_range: Option<f64>,
+    /// Bins of these distances.
+    pub(crate) structure_bins: Option<u64>,
     /// Largest fraction of the work for structure functions.
     pub(crate) structure_share: Option<f64>,
 }
@@ -160,6 +168,8 @@ impl Output {
         });
         self.formats = asked.map(|(format, _)| format.key).collect();
         binding.words(&STRUCTURE, &mut self.structure);
+        binding.number_if_any(&STRUCTURE_RANGE, &mut self.structure_range);
+        binding.whole_if_any(&STRUCTURE_BINS, &mut self.structure_bins);
         binding.number_if_any(&STRUCTURE_SHARE, &mut self.structure_share);
     }
 }

@@ -46,7 +46,7 @@ pub use general::{
     DT, DURATION, HEADING, METHOD, OUTPUT, Output, RunKeys, STEP, STEPPED_RUN, STEPS, TARGETED, THERMO_EVERY,
     TIME, UNITS, bind_heading, too_many_steps,
 };
-pub(crate) use general::{STRUCTURE, SUMMED, TARGET};
+pub(crate) use general::{STRUCTURE, STRUCTURE_RANGE, SUMMED, TARGET};
 pub use key_set::{ExclusiveKeys, KeySet, SECTIONS};
 pub(crate) use keys::Use;
 pub use keys::{Fallback, Key, KeyValue, KeyValueKind, NumberRange};
@@ -58,6 +58,7 @@ pub use machine::{PRECISION, Precision};
 pub use overrides::Overrides;
 pub use rules::{DISC_RIVALS, start_inconsistencies};
 pub use speed::Speed;
+pub(crate) use start_file::path_beside;
 pub use start_file::{StartFile, SuppliedValues};
 pub use target::{MeanTarget, Width};
 pub use values::{Preset, RenamedKey, SceneValues, Vocabulary};

@@ -54,7 +54,7 @@ impl StartFile {
     ) {
         let mut name = self.path.to_string_lossy().into_owned();
         binding.word(file, &mut name);
-        self.path = start_file_path(binding.file(), &name);
+        self.path = path_beside(binding.file(), &name);
         self.shared = binding.shared_start();
         binding.whole_if_any(frame, &mut self.frame);
     }
@@ -91,8 +91,8 @@ impl StartFile {
     }
 }
 
-/// Path of a start file: absolute, or relative to the scene file.
-fn start_file_path(scene_file: &str, path: &str) -> PathBuf {
+/// Path of a file that a scene names: absolute, or relative to the scene file.
+pub(crate) fn path_beside(scene_file: &str, path: &str) -> PathBuf {
     let folder = Path::new(scene_file).parent().unwrap_or(Path::new(""));
     let path = folder.join(path);
     std::path::absolute(&path).unwrap_or(path)

@@ -15,6 +15,7 @@ use crate::scene::{
     Amount, CLEAR_WIDTH, COUNT, DiscStart, FILE, FILL_HEIGHT, GeneratedDiscs, Key, List, MistakeKind, ORIGIN,
     SIDES, SceneError, Speed, WALL_SPACING, WallLining, WallMotion, Warning,
 };
+use crate::structure::MOST_SPECIES;
 
 /// Smallest and largest radius: those that the scene admits, or those found in a list or file.
 pub(crate) fn radii(start: &DiscStart, found: Option<[f64; 2]>) -> Option<[f64; 2]> {
@@ -84,6 +85,7 @@ pub fn create_initial_state(stated: &StatedStart<'_>) -> Result<InitialState, Sc
             (domain, place_above_floor(stated, &domain, *amount, grains, lining, *fill_height)?)
         }
     };
+    number_by_radius(&mut particles);
     if let Some(grains) = stated.start.drawn().filter(|grains| grains.is_exact) {
         let count = particles.grain_count();
         scale_velocities(&mut particles.all_mut()[..count], grains.speed, stated.conserved);
@@ -121,6 +123,24 @@ pub fn create_initial_state(stated: &StatedStart<'_>) -> Result<InitialState, Sc
         }
     }
     Ok(InitialState { domain, particles, warnings })
+}
+
+/// Numbers the species of grains by their radii, if these are few and nothing else tells species apart.
+fn number_by_radius(particles: &mut Particles) {
+    let mut radii: Vec<f64> = vec![];
+    for grain in particles.grains() {
+        if grain.species != 0 || radii.len() > MOST_SPECIES {
+            return;
+        }
+        if !radii.contains(&grain.radius) {
+            radii.push(grain.radius);
+        }
+    }
+    radii.sort_by(f64::total_cmp);
+    let count = if radii.len() > MOST_SPECIES { 0 } else { particles.grain_count() };
+    for grain in &mut particles.all_mut()[..count] {
+        grain.species = radii.partition_point(|radius| *radius < grain.radius) as u8;
+    }
 }
 
 /// Checks that floating-point numbers resolve positions in the box far better than the smallest radius, if known.

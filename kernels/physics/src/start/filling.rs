@@ -53,6 +53,7 @@ pub(super) fn disc(
     Particle {
         id,
         kind,
+        species: 0,
         position: in_space(position),
         velocity: [0.0; 3],
         angle: 0.0,

@@ -9,4 +9,6 @@ pub(super) struct SampledDiscs {
     pub(super) vy: Vec<f64>,
     pub(super) radius: Vec<f64>,
     pub(super) mass: Vec<f64>,
+    /// Number of its species from 0.
+    pub(super) species: Vec<u8>,
 }

@@ -6,7 +6,7 @@
 
 use super::discs::SampledDiscs;
 use super::ideal::{DiscSize, sizes};
-use super::pairs::{BINS, bins};
+use super::pairs::bins;
 use super::setting::StructureSetting;
 use crate::domain::BoxSide;
 use crate::particles::Particles;
@@ -39,7 +39,7 @@ impl Heights {
         if setting.domain.is_periodic(0) {
             sizes.truncate(1);
         }
-        let (bins, width) = (bins(setting), setting.diameter / BINS);
+        let (bins, width) = (bins(setting), setting.diameter / setting.bins);
         let step = width / STEPS as f64;
         let mut chances = vec![];
         for high in 0..sizes.len() {

@@ -4,8 +4,8 @@
 //! the reachable area. This fraction has a formula between closed sides for discs of one size. For several sizes it is an integral over angles.
 //! With wall discs it is sampled on a grid, on the part connected to the initial discs.
 
-use super::pairs::{BINS, bins};
-use super::setting::StructureSetting;
+use super::pairs::bins;
+use super::setting::{StructureSetting, species_numbers};
 use crate::domain::Domain;
 use crate::particles::{Particle, ParticleKind, Particles};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -55,9 +55,45 @@ pub(super) fn pair_probabilities(setting: &StructureSetting, particles: &Particl
         let (linear, square) = (2.0 / PI * (over_x + over_y), over_x * over_y / PI);
         2.0 * PI * r * r * (0.5 - linear * r / 3.0 + 0.25 * square * r * r)
     };
-    let width = setting.diameter / BINS;
+    let width = setting.diameter / setting.bins;
     let of = |bin: usize| (within((bin + 1) as f64 * width) - within(bin as f64 * width)) / (x * y);
     (0..bins(setting)).map(of).collect()
+}
+
+/// Probability of a pair of discs of two species in each bin of distances, for each pair of species.
+pub(super) fn probabilities_of_species(setting: &StructureSetting, particles: &Particles) -> Vec<Vec<f64>> {
+    let (domain, has_walls) = (&setting.domain, particles.grain_count() < particles.len());
+    let numbers = species_numbers(particles.grains()).0;
+    let members = |species: usize| {
+        let grains = particles.grains().iter().zip(&numbers);
+        grains.filter(move |(_, number)| usize::from(**number) == species).map(|(grain, _)| *grain)
+    };
+    let sizes: Vec<Vec<DiscSize>> =
+        (0..setting.species).map(|species| sizes(&members(species).collect::<Vec<_>>())).collect();
+    let grid = |size: &DiscSize| ReachableGrid::new(domain, size.radius, particles);
+    let grids: Vec<Vec<ReachableGrid>> = match has_walls {
+        true => sizes.iter().map(|sizes| sizes.iter().map(grid).collect()).collect(),
+        false => vec![],
+    };
+    let of = |[one, other]: [usize; 2]| {
+        by_rings(setting, |r| {
+            let (mut sum, mut pairs) = (0.0, 0.0);
+            for (a, first) in sizes[one].iter().enumerate() {
+                for (b, second) in sizes[other].iter().enumerate() {
+                    let same = one == other && a == b;
+                    let count = first.count * (second.count - f64::from(u8::from(same)));
+                    pairs += count;
+                    sum += count
+                        * match grids.get(one) {
+                            Some(own) => own[a].share(&grids[other][b], r) / grids[other][b].area(),
+                            None => shared_area(domain, [first.radius, second.radius], r),
+                        };
+                }
+            }
+            sum / pairs
+        })
+    };
+    setting.pairs_of_species().map(of).collect()
 }
 
 /// Averages the probability over pairs of sizes; `by_area` is the probability per unit of area at a distance.
@@ -66,13 +102,10 @@ fn average_over_sizes(
     sizes: &[DiscSize],
     by_area: impl Fn(usize, usize, f64) -> f64 + Sync,
 ) -> Vec<f64> {
-    let width = setting.diameter / BINS;
+    let width = setting.diameter / setting.bins;
     let discs: f64 = sizes.iter().map(|size| size.count).sum();
     let of = |bin: usize| {
-        let [inner, outer] = [bin, bin + 1].map(|edge| edge as f64 * width);
-        let ring = PI * (outer * outer - inner * inner);
-        // The mean distance over the ring makes linear fractions exact.
-        let middle = 2.0 / 3.0 * (outer + inner - outer * inner / (outer + inner));
+        let (ring, middle) = ring(bin, width);
         let mut chance = 0.0;
         for (a, one) in sizes.iter().enumerate() {
             for (b, other) in sizes.iter().enumerate() {
@@ -83,6 +116,21 @@ fn average_over_sizes(
         chance
     };
     (0..bins(setting)).into_par_iter().map(of).collect()
+}
+
+/// Probability in each bin from the probability per unit of area at a distance.
+fn by_rings(setting: &StructureSetting, by_area: impl Fn(f64) -> f64 + Sync) -> Vec<f64> {
+    let of = |bin: usize| {
+        let (ring, middle) = ring(bin, setting.diameter / setting.bins);
+        ring * by_area(middle)
+    };
+    (0..bins(setting)).into_par_iter().map(of).collect()
+}
+
+/// Area of the ring of a bin, and the mean distance over it, which makes linear fractions exact.
+fn ring(bin: usize, width: f64) -> (f64, f64) {
+    let [inner, outer] = [bin, bin + 1].map(|edge| edge as f64 * width);
+    (PI * (outer * outer - inner * inner), 2.0 / 3.0 * (outer + inner - outer * inner / (outer + inner)))
 }
 
 /// Groups discs by radius: each radius alone if there are few, else ranges of radii with about as many discs each.
@@ -254,7 +302,17 @@ mod tests {
 
     fn disc(id: u32, kind: ParticleKind, position: [f64; 2], radius: f64) -> Particle {
         let position = [position[0], position[1], 0.0];
-        Particle { id, kind, position, velocity: [0.0; 3], angle: 0.0, omega: 0.0, radius, mass: 1.0 }
+        Particle {
+            id,
+            kind,
+            species: 0,
+            position,
+            velocity: [0.0; 3],
+            angle: 0.0,
+            omega: 0.0,
+            radius,
+            mass: 1.0,
+        }
     }
 
     /// The integral over angles and the samples on a grid agree with the formula of the rectangle.

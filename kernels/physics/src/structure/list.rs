@@ -26,7 +26,7 @@ const OVER_BOX: [Headline; 1] = [Headline {
 }];
 
 /// All observables.
-pub static OBSERVABLES: [StructureObservable; 16] = [
+pub static OBSERVABLES: [StructureObservable; 20] = [
     StructureObservable {
         name: "g(r)",
         file: "g.csv",
@@ -311,7 +311,7 @@ pub static OBSERVABLES: [StructureObservable; 16] = [
         value: ["mean square displacement", "length²"],
         doc: "Mean square displacement of a disc during a time, followed across periodic sides.",
         source: "Einstein 1905: 4 D t in the plane after long times",
-        seen: SamplingKind::Twice { of: motion::square_displacement, follows: true },
+        seen: SamplingKind::Twice { of: motion::square_displacement, follows: true, by_species: false },
         headlines: &[Headline {
             name: "diffusion constant",
             unit: "length²/time",
@@ -327,7 +327,7 @@ pub static OBSERVABLES: [StructureObservable; 16] = [
         value: ["velocity autocorrelation", "length²/time²"],
         doc: "⟨v(0)·v(t)⟩, the autocorrelation of the velocity: 2kT/m at first, in equilibrium.",
         source: "Green and Kubo: half of its integral is D in the plane",
-        seen: SamplingKind::Twice { of: motion::velocity_product, follows: false },
+        seen: SamplingKind::Twice { of: motion::velocity_product, follows: false, by_species: false },
         headlines: &[Headline {
             name: "diffusion constant",
             unit: "length²/time",
@@ -335,6 +335,75 @@ pub static OBSERVABLES: [StructureObservable; 16] = [
             bias: diffusion::bias_of_velocities,
         }],
         judged: diffusion::judge_velocities,
+    },
+    StructureObservable {
+        name: "g_ab(r)",
+        file: "g-ab.csv",
+        over: &[["a", ""], ["b", ""], ["r", "length"]],
+        value: ["g", ""],
+        doc: "g(r) of each pair of species: pairs of a disc of a and one of b over those of an ideal gas, which tends to 1. Weighted by their numbers of pairs, all of them give g(r): Σ c_a c_b g_ab = g in a large periodic box.",
+        source: "Hansen and McDonald, Theory of Simple Liquids, section 3.6",
+        seen: SamplingKind::Once {
+            over: FunctionArguments::Species(pairs::distances_of_species),
+            of: |it, values, _| {
+                pairs::partial_correlations(
+                    &it.setting,
+                    &it.discs,
+                    &it.partial_distances,
+                    &it.partial_chances,
+                    values,
+                );
+            },
+            further: 0,
+            asks: SampleData::DistancesOfSpecies,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    StructureObservable {
+        name: "S_ab(k)",
+        file: "s-ab.csv",
+        over: &[["a", ""], ["b", ""], ["kx", "1/length"], ["ky", "1/length"]],
+        value: ["S", ""],
+        doc: "Partial structure factors Re ρ_a ρ_b*/√(N_a N_b) with ρ_a = Σ exp(ikr) over the discs of a (Ashcroft and Langreth). S_aa tends to 1, S_ab to 0, and Σ √(c_a c_b) S_ab = S over all ordered pairs of species.",
+        source: "Ashcroft and Langreth 1967",
+        seen: SamplingKind::Once {
+            over: FunctionArguments::Species(waves::vectors_of_species),
+            of: |it, values, _| waves::partial_factors(&it.waves, values),
+            further: 0,
+            asks: SampleData::WavesOfSpecies,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    StructureObservable {
+        name: "coordination_ab",
+        file: "coordination-ab.csv",
+        over: &[["a", ""], ["b", ""]],
+        value: ["neighbours", ""],
+        doc: "Mean number of neighbours of species b around a disc of species a, neighbours as for the coordination. Σ_b is the mean number of a disc of a.",
+        source: "first minimum of g(r) of dense discs",
+        seen: SamplingKind::Once {
+            over: FunctionArguments::Species(neighbours::ordered_species),
+            of: |it, values, _| {
+                neighbours::partial_coordination(&it.setting, &it.discs, &it.neighbours, values);
+            },
+            further: 0,
+            asks: SampleData::Neighbours,
+        },
+        headlines: &[],
+        judged: SOUND,
+    },
+    StructureObservable {
+        name: "msd_a",
+        file: "msd-a.csv",
+        over: &[["a", ""], ["lag", "time"]],
+        value: ["mean square displacement", "length²"],
+        doc: "Mean square displacement of a disc of each species during a time, followed across periodic sides. Weighted by the fractions of the species, all of them give the msd.",
+        source: "Einstein 1905: 4 D t in the plane after long times",
+        seen: SamplingKind::Twice { of: motion::square_displacement, follows: true, by_species: true },
+        headlines: &[],
+        judged: SOUND,
     },
 ];
 

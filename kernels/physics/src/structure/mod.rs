@@ -27,6 +27,7 @@ pub use motion::{MotionHistory, widening};
 pub use pairs::{pair_counts, pair_counts_of_all};
 pub use sample::{StructureSample, hexatic_orders, sampled_values};
 pub use setting::StructureSetting;
+pub(crate) use setting::{MOST_SPECIES, species_numbers};
 pub(crate) use work::bytes;
 pub use work::strides;
 
@@ -37,7 +38,8 @@ pub struct StructureObservable {
     pub name: &'static str,
     /// File in the run's folder.
     pub file: &'static str,
-    /// Arguments of the function, one quantity or two coordinates, each with its unit; the unit is empty for pure numbers.
+    /// Arguments of the function, one quantity or two coordinates, each with its unit; the unit is empty for pure numbers. The numbers of one
+    /// species, `a`, or of two, `a` and `b`, may come before.
     pub over: &'static [[&'static str; 2]],
     /// Quantity of the values, with the unit.
     pub value: [&'static str; 2],
@@ -57,6 +59,11 @@ impl StructureObservable {
     /// True if it needs discs followed across periodic sides.
     pub(crate) fn follows_motion(&self) -> bool {
         matches!(self.seen, SamplingKind::Twice { follows: true, .. })
+    }
+
+    /// Number of leading arguments that are numbers of species.
+    pub fn species(&self) -> usize {
+        self.over.iter().take_while(|[name, _]| ["a", "b"].contains(name)).count()
     }
 
     /// True if it counts discs by position: a value of 0 then means that none was sampled, not that the density is 0.
@@ -86,6 +93,8 @@ pub enum SamplingKind {
         of: fn([f64; 4]) -> f64,
         /// True if it needs discs followed across periodic sides.
         follows: bool,
+        /// True if the means are over the discs of each species.
+        by_species: bool,
     },
 }
 
@@ -98,8 +107,12 @@ pub enum SampleData {
     Distances,
     /// Neighbours of each disc.
     Neighbours,
+    /// Pairs of species by their distance.
+    DistancesOfSpecies,
     /// Density waves.
     Waves,
+    /// Density waves of each species.
+    WavesOfSpecies,
     /// Forces between discs, walls included.
     Forces,
 }
@@ -113,10 +126,12 @@ pub enum FunctionArguments {
     Grid,
     /// Wave vectors, each along one of the periodic axes.
     Waves,
+    /// Coordinates that begin with the numbers of one or two species, from 1.
+    Species(fn(&StructureSetting) -> Vec<Vec<f64>>),
 }
 
 impl FunctionArguments {
-    /// One or two coordinates of each.
+    /// Coordinates of each.
     pub fn places(&self, setting: &StructureSetting) -> Vec<Vec<f64>> {
         match self {
             FunctionArguments::Axis(middles) => {
@@ -128,6 +143,7 @@ impl FunctionArguments {
             FunctionArguments::Waves => {
                 waves::vectors(setting).into_iter().map(|vector| vector.to_vec()).collect()
             }
+            FunctionArguments::Species(places) => places(setting),
         }
     }
 }

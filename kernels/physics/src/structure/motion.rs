@@ -130,8 +130,16 @@ impl MotionHistory {
     }
 
     /// Adds a sample: unwrapped discs in the order of the scene, at a time. Passes each pair of samples separated by a lag to `meet`: the number of
-    /// the earlier sample, the index of the lag, and the means over the discs of Δx², Δy² and the products of velocities along x and y.
-    pub fn add_sample(&mut self, discs: &[[f64; 4]], time: f64, mut meet: impl FnMut(u64, usize, [f64; 4])) {
+    /// the earlier sample, the index of the lag, and the means over the discs of Δx², Δy² and the products of velocities along x and y. With the
+    /// species of all discs, each species passes its own means beside those of all, with its number.
+    pub fn add_sample(
+        &mut self,
+        discs: &[[f64; 4]],
+        time: f64,
+        species: &[u8],
+        mut meet: impl FnMut(u64, usize, Option<usize>, [f64; 4]),
+    ) {
+        let largest = species.iter().max().map_or(0, |&largest| usize::from(largest) + 1);
         let mut states = self.spare.pop().unwrap_or_default();
         states.clear();
         states.extend_from_slice(discs);
@@ -147,8 +155,14 @@ impl MotionHistory {
             let Some(earlier) = look.checked_sub(lag) else { break };
             // Only samples whose number is divisible by the lag's power of two are stored long enough.
             let Ok(at) = self.kept.binary_search_by_key(&earlier, |(look, _)| *look) else { continue };
-            if let Some(means) = means(&self.kept[at].1, later) {
-                meet(earlier, place, means);
+            let before = &self.kept[at].1;
+            if let Some(means) = means(before, later) {
+                meet(earlier, place, None, means);
+            }
+            for own in 0..largest {
+                if let Some(means) = means_of_species(before, later, species, own) {
+                    meet(earlier, place, Some(own), means);
+                }
             }
         }
         let looks = self.looks;
@@ -167,6 +181,26 @@ fn means(earlier: &[[f64; 4]], later: &[[f64; 4]]) -> Option<[f64; 4]> {
     dispatch_best(MotionTask { earlier, later, to: &mut sums });
     let total = |place: usize| sums.sums.iter().map(|lane| lane[place]).sum::<f64>();
     (sums.count > 0).then(|| [0, 1, 2, 3].map(|place| total(place) / sums.count as f64))
+}
+
+/// As [`means`], over the discs of a species.
+fn means_of_species(
+    earlier: &[[f64; 4]],
+    later: &[[f64; 4]],
+    species: &[u8],
+    own: usize,
+) -> Option<[f64; 4]> {
+    let (mut sums, mut count) = ([0.0; 4], 0.0);
+    let discs = earlier.iter().zip(later).zip(species).filter(|(_, species)| usize::from(**species) == own);
+    for ((a, b), _) in discs {
+        let [x, y] = [b[0] - a[0], b[1] - a[1]];
+        if !x.is_nan() {
+            let adds = [x * x, y * y, a[2] * b[2], a[3] * b[3]];
+            sums.iter_mut().zip(adds).for_each(|(sum, add)| *sum += add);
+            count += 1.0;
+        }
+    }
+    (count > 0.0).then(|| sums.map(|sum| sum / count))
 }
 
 /// Sums over discs, distributed to lanes in turn.

@@ -3,7 +3,7 @@
 use super::cells::{AT_ONCE, SampleCells};
 use super::discs::SampledDiscs;
 use super::pairs::displacements_from;
-use super::setting::StructureSetting;
+use super::setting::{MOST_SPECIES, StructureSetting};
 use crate::domain::Domain;
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator,
@@ -39,6 +39,8 @@ struct NeighbourSums {
     numbers: Vec<u32>,
     beyond: u32,
     neighbours: u64,
+    /// Neighbours by the species of a disc and of its neighbour.
+    of_species: [[u64; MOST_SPECIES]; MOST_SPECIES],
     /// Discs by the bin of |ψ6|, and discs that have a ψ6.
     orders: [u32; ORDERS],
     ordered: u32,
@@ -74,6 +76,7 @@ impl Neighbours {
             numbers: vec![0; most_neighbours(setting) + 1],
             beyond: 0,
             neighbours: 0,
+            of_species: [[0; MOST_SPECIES]; MOST_SPECIES],
             orders: [0; ORDERS],
             ordered: 0,
             order: [0.0; 3],
@@ -91,8 +94,18 @@ impl Neighbours {
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(|(around, rows)| {
             let rows = rows.clone();
             let domain = &setting.domain;
-            let looking =
-                NeighbourTask { discs, domain, cells, rows, looked_for, largest, keeps_each, around };
+            let has_species = (2..=MOST_SPECIES).contains(&setting.species);
+            let looking = NeighbourTask {
+                discs,
+                domain,
+                cells,
+                rows,
+                looked_for,
+                largest,
+                keeps_each,
+                has_species,
+                around,
+            };
             dispatch_best(looking);
         });
     }
@@ -125,13 +138,24 @@ struct NeighbourTask<'c> {
     looked_for: [f64; 3],
     largest: f64,
     keeps_each: bool,
+    has_species: bool,
     around: &'c mut NeighbourSums,
 }
 
 impl RegisterTask<f64> for NeighbourTask<'_> {
     #[inline(always)]
     fn on<R: Registers<Lane = f64>>(self, _: R) {
-        let NeighbourTask { discs, domain, cells, rows, looked_for, largest, keeps_each, around } = self;
+        let NeighbourTask {
+            discs,
+            domain,
+            cells,
+            rows,
+            looked_for,
+            largest,
+            keeps_each,
+            has_species,
+            around,
+        } = self;
         let radius = &discs.radius;
         around.begin();
         // Images farther than half a side are not the nearest ones.
@@ -145,12 +169,19 @@ impl RegisterTask<f64> for NeighbourTask<'_> {
                 let own_radius = radius[cells.number[own] as usize];
                 let near = (NEIGHBOURS * (own_radius + largest)).max(looked_for[0]);
                 let mut found = around.search_within(cells, row, own, near, halves);
-                let neighbours =
-                    around.places[..found].iter().zip(&around.squares).filter(|&(&at, &square)| {
-                        let reach = NEIGHBOURS * (own_radius + radius[cells.number[at] as usize]);
-                        square < reach * reach
-                    });
-                let neighbours = neighbours.count();
+                let is_neighbour = |&(&at, &square): &(&usize, &f64)| {
+                    let reach = NEIGHBOURS * (own_radius + radius[cells.number[at] as usize]);
+                    square < reach * reach
+                };
+                let near_ones = || around.places[..found].iter().zip(&around.squares).filter(is_neighbour);
+                let neighbours = near_ones().count();
+                if has_species {
+                    let species = |at: usize| usize::from(discs.species[cells.number[at] as usize]);
+                    let mut counts = [0; MOST_SPECIES];
+                    near_ones().for_each(|(&at, _)| counts[species(at)] += 1);
+                    let sums = &mut around.of_species[species(own)];
+                    sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+                }
                 around.neighbours += neighbours as u64;
                 match around.numbers.get_mut(neighbours) {
                     Some(number) => *number += 1,
@@ -187,6 +218,7 @@ impl NeighbourSums {
         self.numbers.fill(0);
         self.orders.fill(0);
         (self.beyond, self.neighbours, self.ordered) = (0, 0, 0);
+        self.of_species = [[0; MOST_SPECIES]; MOST_SPECIES];
         self.order = [0.0; 3];
         self.each.clear();
         self.reach = f64::NAN;
@@ -338,6 +370,26 @@ pub(super) fn coordination(discs: &SampledDiscs, found: &Neighbours, values: &mu
     }
     whole[0] = found.count() as f64 / discs;
     whole[1] = found.sum(|part| part.beyond) / discs;
+}
+
+/// Computes the mean number of neighbours of each species around a disc of each species; NaN if it has none.
+pub(super) fn partial_coordination(
+    setting: &StructureSetting,
+    discs: &SampledDiscs,
+    found: &Neighbours,
+    values: &mut [f64],
+) {
+    let pairs = (0..setting.species).flat_map(|a| (0..setting.species).map(move |b| [a, b]));
+    for (value, [a, b]) in values.iter_mut().zip(pairs) {
+        let own = discs.species.iter().filter(|species| usize::from(**species) == a).count() as f64;
+        *value = found.parts.iter().map(|part| part.of_species[a][b]).sum::<u64>() as f64 / own;
+    }
+}
+
+/// Ordered pairs of species, by their numbers from 1.
+pub(super) fn ordered_species(setting: &StructureSetting) -> Vec<Vec<f64>> {
+    let numbers = || (1..=setting.species).map(|species| species as f64);
+    numbers().flat_map(|a| numbers().map(move |b| vec![a, b])).collect()
 }
 
 /// Centres of the bins of |ψ6|.

@@ -10,16 +10,14 @@ use rayon::iter::{
 use std::ops::Range;
 use stripmine_kernels::backend::{RegisterTask, Registers, dispatch_best};
 
-/// Bins of distances in a mean diameter; an integer, so that one of them starts at contact.
-pub(super) const BINS: f64 = 50.0;
 /// Number of bins of distances.
 pub(super) fn bins(setting: &StructureSetting) -> usize {
-    (setting.reach * BINS / setting.diameter + 1e-9).floor() as usize
+    (setting.reach * setting.bins / setting.diameter + 1e-9).floor() as usize
 }
 
 /// Centres of the bins of distances (length).
 pub(super) fn distances(setting: &StructureSetting) -> Vec<f64> {
-    (0..bins(setting)).map(|bin| (bin as f64 + 0.5) * setting.diameter / BINS).collect()
+    (0..bins(setting)).map(|bin| (bin as f64 + 0.5) * setting.diameter / setting.bins).collect()
 }
 
 /// Pairs by the bin of their distance.
@@ -32,17 +30,24 @@ pub(super) struct Distances {
 
 impl Distances {
     /// Counts each pair once: every disc of the box with those behind it in its row and with those in the rows above.
-    pub(super) fn count(&mut self, setting: &StructureSetting, cells: &SampleCells) {
-        let count = bins(setting);
+    ///
+    /// With the species of the discs, pairs of species are counted apart: a row of bins for each.
+    pub(super) fn count(&mut self, setting: &StructureSetting, cells: &SampleCells, species: &[u8]) {
+        let bins = bins(setting);
+        let rows = if species.is_empty() { 1 } else { setting.species * setting.species };
+        let count = rows * bins;
         let halves: Vec<f64> = cells.halves(setting.reach).collect();
         self.parts.resize(cells.parts.len(), vec![]);
         let of = |(counts, rows): (&mut Vec<u32>, &Range<usize>)| {
             counts.clear();
             counts.resize(count + 1, 0);
-            let by_length = BINS / setting.diameter;
+            let by_length = setting.bins / setting.diameter;
             let counting = PairCountTask { cells, rows: rows.clone(), halves: &halves, by_length, counts };
             // The dispatch selects an instruction set of this processor.
-            dispatch_best(counting);
+            match species {
+                [] => dispatch_best(counting),
+                _ => counting.count_species(species, [bins, setting.species]),
+            }
         };
         self.parts.par_iter_mut().zip(cells.parts.par_iter()).for_each(of);
         self.counts.clear();
@@ -60,6 +65,31 @@ struct PairCountTask<'c> {
     halves: &'c [f64],
     by_length: f64,
     counts: &'c mut [u32],
+}
+
+impl PairCountTask<'_> {
+    /// Counts pairs by their species, the smaller number first, and their distance.
+    fn count_species(self, species: &[u8], [bins, all]: [usize; 2]) {
+        let PairCountTask { cells, rows, halves, by_length, counts } = self;
+        for row in rows {
+            for own in cells.own(row) {
+                let (x, y, one) = (cells.x[own], cells.y[own], species[cells.number[own] as usize]);
+                for (&half, up) in halves.iter().zip(0..) {
+                    let span = cells.span(row, up, x, half);
+                    let first = if up == 0 { own + 1 } else { span.start };
+                    for there in first..span.end {
+                        let [right, above] = [cells.x[there] - x, cells.y[there] - y];
+                        let bin = ((right * right + above * above).sqrt() * by_length) as usize;
+                        let other = species[cells.number[there] as usize];
+                        let [a, b] = [one.min(other), one.max(other)].map(usize::from);
+                        if bin < bins {
+                            counts[(a * all + b) * bins + bin] += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
 
 impl RegisterTask<f64> for PairCountTask<'_> {
@@ -112,7 +142,7 @@ pub fn pair_counts(setting: &StructureSetting, discs: &[Particle]) -> Vec<u64> {
         SampledDiscs { x: of(|it| it.position[0]), y: of(|it| it.position[1]), ..SampledDiscs::default() };
     let (mut cells, mut distances) = (SampleCells::default(), Distances::default());
     cells.sort(setting, &discs, setting.reach);
-    distances.count(setting, &cells);
+    distances.count(setting, &cells, &[]);
     distances.counts
 }
 
@@ -122,7 +152,7 @@ pub fn pair_counts_of_all(setting: &StructureSetting, discs: &[Particle]) -> Vec
     for (number, own) in discs.iter().enumerate() {
         for other in &discs[number + 1..] {
             let [x, y] = setting.domain.displacement(own.planar_position(), other.planar_position());
-            let bin = ((x * x + y * y).sqrt() * (BINS / setting.diameter)) as usize;
+            let bin = ((x * x + y * y).sqrt() * (setting.bins / setting.diameter)) as usize;
             counts.iter_mut().skip(bin).take(1).for_each(|count| *count += 1);
         }
     }
@@ -145,4 +175,31 @@ pub(super) fn correlation(discs: &SampledDiscs, found: &Distances, chances: &[f6
     for ((value, &count), &chance) in values.iter_mut().zip(&found.counts).zip(chances) {
         *value = if pairs > 0.0 { count as f64 / (pairs * chance) } else { f64::NAN };
     }
+}
+
+/// g_ab(r) in each bin, for each pair of species: pairs over the mean number in an ideal gas, where each pair has a probability `chances`.
+pub(super) fn partial_correlations(
+    setting: &StructureSetting,
+    discs: &SampledDiscs,
+    found: &Distances,
+    chances: &[Vec<f64>],
+    values: &mut [f64],
+) {
+    let bins = bins(setting);
+    let count =
+        |species: usize| discs.species.iter().filter(|it| usize::from(**it) == species).count() as f64;
+    let rows = values.chunks_mut(bins.max(1)).zip(setting.pairs_of_species()).zip(chances);
+    for ((values, [a, b]), chances) in rows {
+        let pairs = if a == b { 0.5 * count(a) * (count(a) - 1.0) } else { count(a) * count(b) };
+        let counts = &found.counts[(a * setting.species + b) * bins..];
+        for ((value, &count), &chance) in values.iter_mut().zip(counts).zip(chances) {
+            *value = if pairs > 0.0 { count as f64 / (pairs * chance) } else { f64::NAN };
+        }
+    }
+}
+
+/// Species and distances of g_ab(r).
+pub(super) fn distances_of_species(setting: &StructureSetting) -> Vec<Vec<f64>> {
+    let over: Vec<Vec<f64>> = distances(setting).into_iter().map(|r| vec![r]).collect();
+    setting.by_pairs_of_species(&over)
 }

@@ -4,10 +4,10 @@ use super::cells::SampleCells;
 use super::discs::SampledDiscs;
 use super::forces::{PairForces, Stress};
 use super::heights::Heights;
-use super::ideal::pair_probabilities;
+use super::ideal::{pair_probabilities, probabilities_of_species};
 use super::neighbours::Neighbours;
 use super::pairs::Distances;
-use super::setting::StructureSetting;
+use super::setting::{StructureSetting, species_numbers};
 use super::waves::Waves;
 use super::{SampleData, SamplingKind, StructureObservable};
 use crate::particles::{GrainStates, Particles};
@@ -16,8 +16,8 @@ use crate::particles::{GrainStates, Particles};
 #[derive(Clone, Debug)]
 pub struct StructureSample {
     pub(super) setting: StructureSetting,
-    /// Radius and mass of each grain.
-    sizes: Vec<[f64; 2]>,
+    /// Radius, mass and species of each grain.
+    sizes: Vec<([f64; 2], u8)>,
     states: GrainStates,
     pub(super) discs: SampledDiscs,
     cells: SampleCells,
@@ -28,6 +28,9 @@ pub struct StructureSample {
     pub(super) heights: Option<Heights>,
     pub(super) neighbours: Neighbours,
     pub(super) waves: Waves,
+    /// Pairs of species by their distance, and the probabilities in an ideal gas, if they are needed.
+    pub(super) partial_distances: Distances,
+    pub(super) partial_chances: Vec<Vec<f64>>,
     pub(super) stress: Stress,
     asked: Vec<SampleData>,
 }
@@ -48,13 +51,18 @@ impl StructureSample {
             [true, false].map(|open| asked.contains(&SampleData::Distances) && setting.has_open_top == open);
         StructureSample {
             setting,
-            sizes: grains.iter().map(|grain| [grain.radius, grain.mass]).collect(),
+            sizes: grains.iter().map(|it| [it.radius, it.mass]).zip(species_numbers(grains).0).collect(),
             states: GrainStates::of(grains),
             discs: SampledDiscs::default(),
             cells: SampleCells::default(),
             distances: Distances::default(),
             neighbours: Neighbours::default(),
             waves: Waves::new(&setting),
+            partial_distances: Distances::default(),
+            partial_chances: match asked.contains(&SampleData::DistancesOfSpecies) {
+                true => probabilities_of_species(&setting, particles),
+                false => vec![],
+            },
             stress: Stress::default(),
             chances: if by_area { pair_probabilities(&setting, particles) } else { vec![] },
             heights: by_heights.then(|| Heights::new(&setting, particles)),
@@ -72,24 +80,32 @@ impl StructureSample {
         let asks = |what: SampleData| self.needs_data(what);
         let (distances, neighbours, waves) =
             (asks(SampleData::Distances), asks(SampleData::Neighbours), asks(SampleData::Waves));
-        if distances || neighbours {
+        let (partial, partial_waves) =
+            (asks(SampleData::DistancesOfSpecies), asks(SampleData::WavesOfSpecies));
+        if distances || partial || neighbours {
             let reaches = [
-                if distances { self.setting.reach } else { 0.0 },
+                if distances || partial { self.setting.reach } else { 0.0 },
                 if neighbours { Neighbours::reach(&self.setting, self.discs.x.len()) } else { 0.0 },
             ];
             self.cells.sort(&self.setting, &self.discs, reaches[0].max(reaches[1]));
         }
         if distances {
-            self.distances.count(&self.setting, &self.cells);
+            self.distances.count(&self.setting, &self.cells, &[]);
             if let Some(heights) = &mut self.heights {
                 heights.find(&self.discs);
             }
+        }
+        if partial {
+            self.partial_distances.count(&self.setting, &self.cells, &self.discs.species);
         }
         if neighbours {
             self.neighbours.find(&self.setting, &self.discs, &self.cells);
         }
         if waves {
             self.waves.sum(&self.setting, &self.discs);
+        }
+        if partial_waves {
+            self.waves.sum_species(&self.setting, &self.discs);
         }
         true
     }
@@ -115,16 +131,18 @@ impl StructureSample {
 
     /// Copies the states of the discs present into columns.
     fn copy_states(&mut self) {
-        let SampledDiscs { x, y, vx, vy, radius, mass } = &mut self.discs;
+        let SampledDiscs { x, y, vx, vy, radius, mass, species } = &mut self.discs;
         [&mut *x, y, vx, vy, radius, mass].into_iter().for_each(|column| column.clear());
+        species.clear();
         let there = self.states.rows().iter().zip(&self.sizes).filter(|(row, _)| !row[0].is_nan());
-        for (&[at_x, at_y, along_x, along_y], &[its_radius, its_mass]) in there {
+        for (&[at_x, at_y, along_x, along_y], &([its_radius, its_mass], its_species)) in there {
             x.push(at_x);
             y.push(at_y);
             vx.push(along_x);
             vy.push(along_y);
             radius.push(its_radius);
             mass.push(its_mass);
+            species.push(its_species);
         }
     }
 }

@@ -67,11 +67,24 @@ pub(super) fn factor(waves: &Waves, values: &mut [f64]) {
     values.copy_from_slice(&waves.factor);
 }
 
+/// Partial structure factors of each pair of species and wave.
+pub(super) fn partial_factors(waves: &Waves, values: &mut [f64]) {
+    values.copy_from_slice(&waves.partial);
+}
+
+/// Species and wave vectors of the partial structure factors.
+pub(super) fn vectors_of_species(setting: &StructureSetting) -> Vec<Vec<f64>> {
+    let over: Vec<Vec<f64>> = vectors(setting).iter().map(|vector| vector.to_vec()).collect();
+    setting.by_pairs_of_species(&over)
+}
+
 /// Waves of a box, and their sums.
 #[derive(Clone, Debug)]
 pub(super) struct Waves {
     along: Vec<AxisWaves>,
     factor: Vec<f64>,
+    /// S_ab of each pair of species, wave by wave.
+    partial: Vec<f64>,
     parts: Vec<Vec<Phasors>>,
 }
 
@@ -101,15 +114,46 @@ impl Waves {
         Waves {
             along: axes(setting).map(of).collect(),
             factor: vec![0.0; sums_of_a_disc(setting)],
+            partial: vec![],
             parts: vec![],
         }
     }
 
     /// Sums over the discs.
     pub(super) fn sum(&mut self, setting: &StructureSetting, discs: &SampledDiscs) {
-        let Waves { along, factor, parts } = self;
+        let (count, amplitudes) = (discs.x.len(), self.amplitudes(setting, discs));
+        for (value, [x, y]) in self.factor.iter_mut().zip(amplitudes) {
+            *value = (x * x + y * y) / count as f64;
+        }
+    }
+
+    /// Computes Re ρ_a ρ_b*/√(N_a N_b) of each pair of species, ρ being the sum over the discs of one; NaN if one has none.
+    pub(super) fn sum_species(&mut self, setting: &StructureSetting, discs: &SampledDiscs) {
+        let of = |species: usize| {
+            let is_own = |own: &u8| usize::from(*own) == species;
+            let column = |of: &[f64]| {
+                of.iter().zip(&discs.species).filter(|(_, own)| is_own(own)).map(|(at, _)| *at).collect()
+            };
+            SampledDiscs { x: column(&discs.x), y: column(&discs.y), ..SampledDiscs::default() }
+        };
+        let members: Vec<SampledDiscs> = (0..setting.species).map(of).collect();
+        let sums: Vec<Vec<[f64; 2]>> = members.iter().map(|it| self.amplitudes(setting, it)).collect();
+        self.partial.clear();
+        for [a, b] in setting.pairs_of_species() {
+            let norm = ((members[a].x.len() * members[b].x.len()) as f64).sqrt();
+            let factors = sums[a].iter().zip(&sums[b]).map(|([x, y], [u, v])| match norm > 0.0 {
+                true => (x * u + y * v) / norm,
+                false => f64::NAN,
+            });
+            self.partial.extend(factors);
+        }
+    }
+
+    /// Σ exp(ikr) of each wave, real and imaginary part.
+    fn amplitudes(&mut self, setting: &StructureSetting, discs: &SampledDiscs) -> Vec<[f64; 2]> {
+        let Waves { along, factor, parts, .. } = self;
         let count = discs.x.len();
-        let mut values = factor.iter_mut();
+        let mut amplitudes = Vec::with_capacity(factor.len());
         parts.resize(count.div_ceil(AT_A_TIME), vec![]);
         for AxisWaves { axis, different, steps } in &*along {
             let by_length = TAU / setting.domain.length(*axis);
@@ -121,13 +165,13 @@ impl Waves {
                 let summing = WaveTask { places, origin, by_length, different, steps, sums };
                 dispatch_best(summing);
             });
-            for (wave, value) in values.by_ref().take(steps.len()).enumerate() {
+            for wave in 0..steps.len() {
                 let part = |sums: &Vec<Phasors>| sums[wave].map(|lanes| lanes.iter().sum::<f64>());
                 // The sum is in the order of the discs for any number of threads.
-                let [x, y] = parts.iter().map(part).fold([0.0; 2], |[x, y], [a, b]| [x + a, y + b]);
-                *value = (x * x + y * y) / count as f64;
+                amplitudes.push(parts.iter().map(part).fold([0.0; 2], |[x, y], [a, b]| [x + a, y + b]));
             }
         }
+        amplitudes
     }
 }
 

@@ -12,6 +12,7 @@ use std::f64::consts::PI;
 /// Nothing is measured during a run, so that every machine samples the same moments.
 const TAKEN_UP: f64 = 60.0;
 const PAIR: f64 = 8.0;
+const PAIR_OF_SPECIES: f64 = 16.0;
 const NEIGHBOURS: f64 = 100.0;
 const CANDIDATE: f64 = 16.0;
 const WAVE: f64 = 0.5;
@@ -29,8 +30,9 @@ fn nanoseconds(observables: &[&StructureObservable], setting: &StructureSetting,
     for observable in observables {
         let (over, asks) = match observable.seen {
             SamplingKind::Once { over, asks, .. } => (over, asks),
-            SamplingKind::Twice { follows, .. } => {
-                row = row.max(ROW) + if follows { FOLLOWED } else { 0.0 };
+            SamplingKind::Twice { follows, by_species, .. } => {
+                let again = if by_species { ROW } else { 0.0 };
+                row = row.max(ROW) + again + if follows { FOLLOWED } else { 0.0 };
                 continue;
             }
         };
@@ -44,12 +46,15 @@ fn nanoseconds(observables: &[&StructureObservable], setting: &StructureSetting,
         snapshot += match asks {
             SampleData::Discs => ALONE,
             SampleData::Forces => FORCES,
+            SampleData::DistancesOfSpecies => {
+                PAIR_OF_SPECIES * 0.5 * PI * setting.reach * setting.reach * density
+            }
             SampleData::Distances => {
                 let ideal = if setting.has_open_top { heights::nanoseconds(setting, discs) } else { 0.0 };
                 PAIR * 0.5 * PI * setting.reach * setting.reach * density + ideal
             }
             SampleData::Neighbours => NEIGHBOURS + CANDIDATE * neighbours_looked_at(setting, discs),
-            SampleData::Waves => WAVE * sums_of_a_disc(setting) as f64,
+            SampleData::Waves | SampleData::WavesOfSpecies => WAVE * sums_of_a_disc(setting) as f64,
         };
     }
     [row, snapshot]
@@ -86,7 +91,7 @@ pub(crate) fn bytes(observables: &[&StructureObservable], discs: usize, rows: Op
             + 2 * state * MotionHistory::most_kept(rows.unwrap_or(u64::MAX));
     }
     if stands {
-        // Six columns, three in the order of cells with images, three of cells; sizes.
+        // Six columns, three in the order of cells with images, three of cells; sizes and species.
         let of_a_disc = size_of::<[f64; 6]>() + 2 * size_of::<[f64; 3]>() + 3 * size_of::<u32>();
         let meets = |observable: &&StructureObservable| {
             matches!(observable.seen, SamplingKind::Once { asks: SampleData::Forces, .. })
@@ -96,12 +101,16 @@ pub(crate) fn bytes(observables: &[&StructureObservable], discs: usize, rows: Op
             bytes += ((size_of::<Particle>() + 6 * size_of::<f64>()) * discs) as u64;
         }
         let waves = |observable: &&StructureObservable| {
-            matches!(observable.seen, SamplingKind::Once { asks: SampleData::Waves, .. })
+            matches!(
+                observable.seen,
+                SamplingKind::Once { asks: SampleData::Waves | SampleData::WavesOfSpecies, .. }
+            )
         };
         if observables.iter().any(waves) {
             bytes += bytes_of_waves(discs);
         }
-        bytes += (GrainStates::bytes(discs) + (of_a_disc + size_of::<[f64; 2]>()) * discs) as u64;
+        let sizes = size_of::<([f64; 2], u8)>() + size_of::<u8>();
+        bytes += (GrainStates::bytes(discs) + (of_a_disc + sizes) * discs) as u64;
     }
     bytes
 }

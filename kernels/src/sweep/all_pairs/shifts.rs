@@ -2,7 +2,8 @@
 
 use super::is_split;
 use crate::isa::{Array, Element, Kernel, Machine, Slot};
-use crate::law::{Env, Law, ParticleField, ParticleSum, StatedEnv};
+use crate::law::{Env, Law, LawTable, ParticleField, ParticleSum, StatedEnv};
+use crate::sweep::lookup::rows_in_program;
 use std::cell::Cell;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -109,6 +110,11 @@ impl<M: Machine> Env<3> for &ShiftEnv<M> {
     #[inline(always)]
     fn uniform(self, value: f64) -> M::V {
         self.machine.uniform(value)
+    }
+
+    #[inline(always)]
+    fn lookup<const N: usize>(self, _: &LawTable, columns: [usize; N], number: M::V) -> [M::V; N] {
+        rows_in_program(self.machine, columns, number)
     }
 
     #[inline(always)]

@@ -3,7 +3,8 @@
 use super::{BodyColumns, is_split};
 use crate::backend::{GROUP, Precision, RegisterTask, Registers};
 use crate::isa::{Element, Vector};
-use crate::law::{Env, Law, ParticleField, ParticleSum, StatedEnv};
+use crate::law::{Env, Law, LawTable, ParticleField, ParticleSum, StatedEnv};
+use crate::sweep::lookup::rows_in_registers;
 use std::array::from_fn;
 use std::cell::Cell;
 use std::ops::Range;
@@ -106,6 +107,10 @@ impl<R: Registers, const SUMS: usize, const BOTH: bool> Env<3> for &TileEnv<'_, 
     #[inline(always)]
     fn uniform(self, value: f64) -> R::V {
         self.registers.splat(R::Lane::from_f64(value))
+    }
+    #[inline(always)]
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: R::V) -> [R::V; N] {
+        rows_in_registers(self.registers, table, columns, number)
     }
     #[inline(always)]
     fn none(self, predicate: <R::V as Vector>::Predicate) -> bool {

@@ -25,7 +25,8 @@ use super::records::{ENTRIES, MOST_BLOCKS, RecordEntry, StateRecords};
 use crate::backend::{GROUP, QUAD, RecordPlaces, RegisterTask, block, registers_of};
 use crate::backend::{Precision, Registers};
 use crate::isa::{Element, Vector, is_same_storage};
-use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
+use crate::law::{Env, Law, LawTable, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
+use crate::sweep::lookup::rows_in_registers;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
@@ -239,6 +240,10 @@ impl<R: Registers, const PLAIN: bool> Env<2> for &GatherEnv<R, PLAIN> {
     #[inline(always)]
     fn uniform(self, value: f64) -> R::V {
         self.registers.splat(R::Lane::from_f64(value))
+    }
+    #[inline(always)]
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: R::V) -> [R::V; N] {
+        rows_in_registers(self.registers, table, columns, number)
     }
     #[inline(always)]
     fn none(self, _: <R::V as Vector>::Predicate) -> bool {

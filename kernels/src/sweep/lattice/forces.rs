@@ -3,8 +3,9 @@
 use super::shape::{Coordinates, LatticeFrame, LatticeShape};
 use super::vectors::lattice_vector;
 use crate::isa::{Array, Element, Kernel, LaneCounter, Machine, Slot, Vector};
-use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
+use crate::law::{Env, Law, LawTable, ObservationRequest, ParticleField, ParticleSum, StatedEnv};
 use crate::mask::Mask;
+use crate::sweep::lookup::rows_in_program;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
@@ -132,6 +133,11 @@ impl<M: Machine> Env<2> for &LatticeEnv<M> {
     #[inline(always)]
     fn uniform(self, value: f64) -> M::V {
         self.machine.uniform(value)
+    }
+
+    #[inline(always)]
+    fn lookup<const N: usize>(self, _: &LawTable, columns: [usize; N], number: M::V) -> [M::V; N] {
+        rows_in_program(self.machine, columns, number)
     }
 
     #[inline(always)]

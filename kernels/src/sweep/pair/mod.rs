@@ -5,7 +5,7 @@
 mod motion;
 mod samples;
 
-use crate::law::{Env, Law, ParticleField, ParticleSum, StatedEnv};
+use crate::law::{Env, Law, LawTable, ParticleField, ParticleSum, StatedEnv};
 use std::cell::Cell;
 
 /// A disc with every quantity that a law may read.
@@ -212,6 +212,10 @@ impl Env<2> for &PairEnv<'_> {
     #[inline]
     fn uniform(self, value: f64) -> f64 {
         value
+    }
+    #[inline]
+    fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: f64) -> [f64; N] {
+        table.numbers(columns, number)
     }
     #[inline]
     fn none(self, predicate: bool) -> bool {

@@ -183,6 +183,7 @@ fn scattered_discs(model: &GranularModel, occupancy: f64) -> Particles {
             discs.push(Particle {
                 id: discs.len() as u32 + 1,
                 kind: ParticleKind::Grain,
+                species: 0,
                 position: in_space(at),
                 velocity: in_space(velocity),
                 angle: 0.0,

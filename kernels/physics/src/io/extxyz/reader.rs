@@ -277,10 +277,11 @@ fn parse(raw: &RawFrame, room: FrameContents) -> Result<ParsedFrame, XyzMistakeL
     let mut mistakes = XyzMistakeList::default();
     let mut discs = Vec::new();
     let mut lines_of_ids = HashMap::new();
-    let mut fields = Vec::new();
+    let (mut fields, mut names) = (Vec::new(), Vec::new());
     let rows = || (raw.line + 2..).zip(raw.text.split(|&byte| byte == b'\n').skip(1).take(raw.count));
     for (line, row) in rows() {
-        match utf8(row, line).and_then(|row| header.layout.disc(row, (line, room), &mut fields)) {
+        match utf8(row, line).and_then(|row| header.layout.disc(row, (line, room), (&mut fields, &mut names)))
+        {
             Err(mistake) => mistakes.add(mistake),
             Ok(mut disc) => {
                 if !header.layout.has_ids() {

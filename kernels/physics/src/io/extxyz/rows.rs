@@ -142,12 +142,12 @@ impl XyzRowLayout {
         row.zeros(POS, &[(2, z)]).err()
     }
 
-    /// Parses a disc; its id is 0 if rows have none. `fields` is a buffer for reuse.
+    /// Parses a disc; its id is 0 if rows have none. `fields` is a buffer for reuse. Names of species are numbered as they occur, in `names`.
     pub(super) fn disc<'a>(
         &self,
         text: &'a str,
         (line, room): (usize, FrameContents),
-        fields: &mut Vec<&'a str>,
+        (fields, names): (&mut Vec<&'a str>, &mut Vec<String>),
     ) -> Result<Particle, Mistake> {
         fields.clear();
         fields.extend(text.split_ascii_whitespace());
@@ -161,6 +161,10 @@ impl XyzRowLayout {
         }
         let row = XyzRow { layout: self, text, line, fields };
         let kind = if row.fields(SPECIES) == ["W"] { ParticleKind::Wall } else { ParticleKind::Grain };
+        let species = match row.fields(SPECIES) {
+            [name] if kind == ParticleKind::Grain => number_of(name, names),
+            _ => 0,
+        };
         let position = row.vector(POS)?;
         let id = row.id()?;
         let moving = self.either(VELO, MOMENTA);
@@ -174,8 +178,21 @@ impl XyzRowLayout {
             velocity = row.velocity_from_momentum(velocity, mass)?;
         }
         let omega = row.spin()?;
-        Ok(Particle { id, kind, position, velocity, angle: 0.0, omega, radius, mass })
+        Ok(Particle { id, kind, species, position, velocity, angle: 0.0, omega, radius, mass })
     }
+}
+
+/// Number of a name among those known, to which it is added; the largest for all beyond it.
+fn number_of(name: &str, names: &mut Vec<String>) -> u8 {
+    let number = names.iter().position(|known| known == name).unwrap_or_else(|| {
+        if names.len() < usize::from(u8::MAX) {
+            names.push(name.to_owned());
+            names.len() - 1
+        } else {
+            names.len()
+        }
+    });
+    u8::try_from(number).unwrap_or(u8::MAX)
 }
 
 /// Row split into its fields, as many as the layout requires.

@@ -238,6 +238,7 @@ mod tests {
             .prop_map(|([x, y, z, vx, vy, vz, omega], id, is_wall, mass, radius)| Particle {
                 id,
                 kind: if is_wall { ParticleKind::Wall } else { ParticleKind::Grain },
+                species: 0,
                 position: [x, y, z],
                 velocity: [vx, vy, vz],
                 angle: 0.0,

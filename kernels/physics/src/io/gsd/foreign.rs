@@ -132,8 +132,10 @@ impl Chunks<'_> {
         }
         let vector = |of: &[f64], at: usize| [of[3 * at], of[3 * at + 1], of[3 * at + 2]];
         let particle = |at: usize| {
-            let is_wall = wall.is_some() && kinds.get(at).copied().unwrap_or(0) == wall.unwrap_or(0);
+            let kind = kinds.get(at).copied().unwrap_or(0);
+            let is_wall = wall == Some(kind);
             Particle {
+                species: if is_wall { 0 } else { kind.min(u8::MAX.into()) as u8 },
                 velocity: velocity.as_ref().map_or([0.0; 3], |velocity| vector(velocity, at)),
                 radius: diameter.as_ref().map_or(0.0, |diameter| 0.5 * diameter[at]),
                 mass: mass.as_ref().map_or(0.0, |mass| mass[at]),

@@ -301,6 +301,7 @@ impl Chunks<'_> {
         let particle = |number: usize| Particle {
             id: ids[number],
             kind: if kinds[number] == 0 { ParticleKind::Grain } else { ParticleKind::Wall },
+            species: 0,
             position: vector(&position, number),
             velocity: vector(&velocity, number),
             angle: angle[number],

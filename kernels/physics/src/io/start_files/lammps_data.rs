@@ -3,6 +3,7 @@
 use super::text::{TextFile, TextLine, TextMistake, TextReadError};
 use super::{
     QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, is_count, lines,
+    species_of_type,
 };
 use crate::io::lammps::{DATA_HEADING, WALL_TYPE, mass_of_sphere};
 use crate::particles::{Particle, ParticleKind, Particles};
@@ -286,6 +287,7 @@ fn atom(
     let id = file.id(row, words[0])?;
     let mut particle =
         Particle::at_rest(id, if is_wall { ParticleKind::Wall } else { ParticleKind::Grain }, position);
+    particle.species = if is_wall { 0 } else { species_of_type(kind) };
     if let Some([diameter, density]) = style.sphere {
         particle.radius = 0.5 * file.positive(row, "the diameter", words[diameter])?;
         particle.mass = mass_of_sphere(file.positive(row, "the density", words[density])?, particle.radius);

@@ -1,7 +1,9 @@
 //! Text dump of LAMMPS: frames of `ITEM:` sections, with columns by name.
 
 use super::text::{TextFile, TextLine, TextMistake, TextReadError};
-use super::{QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, lines};
+use super::{
+    QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, lines, species_of_type,
+};
 use crate::io::lammps::{DUMP_COLUMNS, WALL_TYPE};
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::path::Path;
@@ -97,7 +99,7 @@ impl RawDump {
         let velocity: Vec<usize> = ["vx", "vy", "vz"].iter().filter_map(|name| column(name)).collect();
         let [id, mass, omega] = ["id", "mass", "omegaz"].map(column);
         let radius = column("radius").map(|at| (at, 1.0)).or(column("diameter").map(|at| (at, 0.5)));
-        let wall = column("type").filter(|_| is_own);
+        let kind = column("type");
         let mut particles = Vec::with_capacity(self.rows.len());
         for (number, row) in self.rows.iter().enumerate() {
             let words = row.words();
@@ -107,12 +109,13 @@ impl RawDump {
                 return Err(file.wrong(row.number, TextMistake::Fields { found, expected }));
             }
             let id = id.map_or(Ok(number as u32 + 1), |at| file.id(row, words[at]))?;
-            let is_wall = wall.is_some_and(|at| words[at] == WALL_TYPE);
+            let is_wall = is_own && kind.is_some_and(|at| words[at] == WALL_TYPE);
             let mut particle = Particle::at_rest(
                 id,
                 if is_wall { ParticleKind::Wall } else { ParticleKind::Grain },
                 [0.0; 3],
             );
+            particle.species = kind.filter(|_| !is_wall).map_or(0, |at| species_of_type(words[at]));
             for (axis, place) in places.iter().enumerate() {
                 let Some((at, is_scaled)) = *place else { continue };
                 let value = file.number(row, "the position", words[at])?;

@@ -220,6 +220,11 @@ pub fn read_start_file(path: &Path, request: StartRequest) -> Result<StartFrame,
     })
 }
 
+/// Species of a type of LAMMPS; types are numbered from 1.
+fn species_of_type(name: &str) -> u8 {
+    name.parse::<u32>().map_or(0, |number| number.saturating_sub(1).min(u8::MAX.into()) as u8)
+}
+
 /// Lines of the first bytes of a file, without a byte-order mark.
 fn lines(head: &[u8]) -> impl Iterator<Item = &[u8]> {
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);

@@ -84,6 +84,7 @@ impl DiscIdentities {
         Particle {
             id: self.id(number),
             kind: ParticleKind::Grain,
+            species: 0,
             position: in_space(position),
             velocity: in_space(velocity),
             angle,
@@ -104,6 +105,7 @@ mod tests {
         let disc = |id: u32, omega: f64| Particle {
             id,
             kind: ParticleKind::Grain,
+            species: 0,
             position: [f64::from(id), 2.0, 0.0],
             velocity: [0.5, -f64::from(id), 0.0],
             angle: 3.0 * omega,

@@ -34,6 +34,7 @@ impl CheckedHardDisks {
             domain: self.domain,
             seed: scene.start.seed(),
             start_file: scene.start.file().map(Path::to_owned),
+            law_file: None,
             facts: self.facts(),
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),

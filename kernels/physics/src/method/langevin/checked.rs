@@ -1,7 +1,8 @@
 //! Checks a scene of particles in a bath against the preconditions of the method.
 
 use super::chosen_search::{ChosenSearch, choose_pair_search};
-use super::limits::{CollidingParticles, lan17_step_bound, step_limits};
+use super::laws::{PairLaw, Parameters, TABLE_FILE};
+use super::limits::{CollidingParticles, hardest_collision_energy, lan17_step_bound, step_limits};
 use super::scene::LangevinScene;
 use crate::domain::Domain;
 use crate::method::{Prepared, StepLimit, compress};
@@ -11,6 +12,7 @@ use crate::scene::{
     DT, GENERATE, MistakeKind, RADIUS, ReadBinding, SceneError, SceneErrors, SceneValues, WallMotion, Warning,
 };
 use crate::start::{StatedStart, create_initial_state, noise_seed, outside, overlaps};
+use stripmine_kernels::law::potential::PairPotential;
 use stripmine_kernels::noise::NoiseSource;
 
 /// Largest pair energy at the start, in ε.
@@ -60,8 +62,12 @@ pub(super) fn check_langevin_scene(values: SceneValues) -> Result<CheckedLangevi
     let made = create_initial_state(&stated)?;
     let (domain, particles) = (made.domain, made.particles);
     let mut errors = outside(&stated, &domain, &particles);
+    if scene.law == PairLaw::Table {
+        errors.extend(read_table(&values, &mut scene.parameters, &particles).err());
+    }
     if scene.law.has_pairs() {
-        let deepest = 1.0 - scene.law.nearest(&scene.parameters, HIGHEST);
+        let diameter = particles.all().first().map_or(1.0, |first| 2.0 * first.radius);
+        let deepest = 1.0 - scene.law.nearest(&scene.parameters, diameter, HIGHEST);
         let why = "that near, they would be thrown apart";
         errors.extend(overlaps(&stated, &domain, &particles, deepest, why));
     }
@@ -87,6 +93,8 @@ pub(super) fn check_langevin_scene(values: SceneValues) -> Result<CheckedLangevi
     SceneErrors::ok_if_empty(errors)?;
     let mut warnings = made.warnings;
     warnings.extend(too_long(&scene, diameter, mass));
+    let (count, area) = (particles.len(), domain.area());
+    warnings.extend(too_short_table(&scene, CollidingParticles { diameter, mass, count, area }));
     // Written into the scene if the start has no seed. Otherwise the noise follows the seed of the start, also if a
     // resolved scene is run again with another one.
     if scene.start.seed().is_none() {
@@ -133,6 +141,50 @@ fn of_one_kind(values: &SceneValues, particles: &Particles) -> Result<Particle, 
         ))
         .expecting("one radius and one mass, no radius_spread")),
     }
+}
+
+/// Reads the table of the pair law.
+fn read_table(
+    values: &SceneValues,
+    parameters: &mut Parameters,
+    particles: &Particles,
+) -> Result<(), SceneError> {
+    let refused = |message: String| {
+        let error = values.spot(&TABLE_FILE).error(MistakeKind::StartFile, message);
+        error.advising("correct the table, or name another one")
+    };
+    let Parameters { table, strength, .. } = parameters;
+    table.read(*strength).map_err(|error| refused(format!("the table cannot be used: {error}")))?;
+    let [first, _] = table.potential.ends();
+    match particles.all().first().map(|particle| 2.0 * particle.radius) {
+        Some(diameter) if first > diameter => {
+            let message =
+                format!("the table begins at r = {first}, beyond the diameter {diameter} of the particles");
+            Err(refused(message)
+                .expecting(format!("a first row at r <= {diameter}, or particles.radius >= {}", 0.5 * first)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Warning for a table that ends below the energy of collisions.
+fn too_short_table(scene: &LangevinScene, particles: CollidingParticles) -> Option<Warning> {
+    let potential = &scene.parameters.table.potential;
+    let first = potential.ends()[0];
+    let (reached, needed) =
+        (potential.energy(first), scene.bath.temperature * hardest_collision_energy(scene, particles));
+    (scene.law == PairLaw::Table && first > 0.0 && reached < needed).then(|| Warning {
+        check: "table-begins-late",
+        share: if reached > 0.0 { needed / reached } else { f64::INFINITY },
+        is_refusal: false,
+        key: TABLE_FILE.path(),
+        message: format!(
+            "the table begins at r = {first} with an energy of {}, but the hardest collision has about {}: particles that come nearer are lost",
+            significant(reached, 3),
+            significant(needed, 3)
+        ),
+        suggestion: "add rows at smaller distances".to_owned(),
+    })
 }
 
 /// Warning for a step beyond LAN17's bound.

@@ -146,7 +146,7 @@ fn default_skin(domain: &Domain, reach: f64, count: usize) -> f64 {
 
 /// Widest cell (length) that hardly any two particles of a diameter share.
 pub(super) fn widest_cell(scene: &LangevinScene, diameter: f64) -> f64 {
-    scene.law.nearest(&scene.parameters, HIGHEST) * diameter / std::f64::consts::SQRT_2
+    scene.law.nearest(&scene.parameters, diameter, HIGHEST) * diameter / std::f64::consts::SQRT_2
 }
 
 /// Returns the lattice for pairs up to `reach` (length) apart, with cells no wider than `widest` (length); none if the box is too small.

@@ -18,7 +18,7 @@ use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::langevin::{Baoab, Bath, Stochastic};
 
 /// Dynamics of particles of one species in a bath.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct BathDynamics {
     law: SweptLaw,
     scheme: SchemeKind,
@@ -43,7 +43,7 @@ impl BathDynamics {
 
 impl Dynamics for BathDynamics {
     fn with_law<W: LawTask>(&self, work: W) -> W::Output {
-        self.law.with(work)
+        self.law.clone().with(work)
     }
 
     fn with_scheme<W: SchemeTask>(&self, work: W) -> W::Output {

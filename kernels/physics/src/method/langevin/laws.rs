@@ -3,12 +3,16 @@
 //! A law is a [`PairPotential`] with a cut-off. Everything else, such as limits of the step, the smallest distance at the start and
 //! the suitable searches, follows from the potential.
 
+use super::pair_table::PairTable;
 use crate::method::pairwise::LawTask;
 use crate::method::{SimplifiedModel, Twin};
 use crate::scene::{Binding, Fallback, Key, KeyValueKind, NumberRange, Overrides, SceneValues, Use};
 use crate::words::{Words, define_words};
+use stripmine_kernels::isa::{Memory, Slot};
+use stripmine_kernels::law::LawTable;
 use stripmine_kernels::law::lennard_jones::LennardJones;
 use stripmine_kernels::law::potential::{CutOff, PairPotential};
+use stripmine_kernels::law::tabulated::Tabulated;
 use stripmine_kernels::law::yukawa::Yukawa;
 
 /// Defines the pair laws: a list of potentials, each with its laws. An entry has a word, a help text, and its own keys. Each key gives a
@@ -39,7 +43,7 @@ macro_rules! define_pair_laws {
         ));
         /// Key of the energy scale of the pair potential.
         pub static STRENGTH: Key = key("strength", KeyValueKind::Number(NumberRange::Positive), "energy", "1.0", Some((&LAW, WORDS)),
-            "Energy ε of the pair potential; the well depth of Lennard-Jones.");
+            "Energy ε of the pair potential; the well depth of Lennard-Jones; a factor of the energies of a table.");
         $($($(
             #[doc = $doc]
             pub static $key: Key = key(stringify!($name), KeyValueKind::Number($bounds), $unit, stringify!($default),
@@ -47,19 +51,21 @@ macro_rules! define_pair_laws {
         )*)+)+
 
         /// Keys of the pair law, in the order in which they are written.
-        pub(super) static KEYS: &[&Key] = &[&LAW, &STRENGTH, $($($(&$key,)*)+)+];
+        pub(super) static KEYS: &[&Key] = &[&LAW, &TABLE_FILE, &STRENGTH, $($($(&$key,)*)+)+];
 
         /// Parameters of the pair law.
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[derive(Clone, Debug, PartialEq)]
         pub(super) struct Parameters {
             /// ε (energy).
             pub(super) strength: f64,
+            /// Table of the potential.
+            pub(super) table: PairTable,
             $($($(#[doc = $doc] $name: f64,)*)+)+
         }
 
         impl Default for Parameters {
             fn default() -> Self {
-                Parameters { strength: 1.0, $($($($name: $default,)*)+)+ }
+                Parameters { strength: 1.0, table: PairTable::default(), $($($($name: $default,)*)+)+ }
             }
         }
 
@@ -69,6 +75,11 @@ macro_rules! define_pair_laws {
                 match law {
                     PairLaw::None => {}
                     $($(PairLaw::$law => {
+                        if law == PairLaw::Table {
+                            let mut path = self.table.path().to_string_lossy().into_owned();
+                            binding.word(&TABLE_FILE, &mut path);
+                            self.table = PairTable::at(binding.file(), &path);
+                        }
                         binding.number(&STRENGTH, &mut self.strength);
                         $(binding.number(&$key, &mut self.$name);)*
                     })+)+
@@ -77,7 +88,7 @@ macro_rules! define_pair_laws {
         }
 
         /// Law with its parameters, as sweeps are compiled for it: one variant per potential.
-        #[derive(Clone, Copy, Debug)]
+        #[derive(Clone, Debug)]
         pub(super) enum SweptLaw {
             $($potential(CutOff<$potential>),)+
         }
@@ -148,6 +159,34 @@ define_pair_laws! {
                 CutOff::new(potential, (1.0 + 7.5 / of.screening) * diameter)
             };
     }
+    Tabulated {
+        Table = "table", "the potential through the rows of `law.file`, cut off at the last and shifted to 0 there",
+            keys [], simpler [],
+            |of, _| {
+                let potential = of.table.potential.clone();
+                let end = potential.ends()[1];
+                CutOff::new(potential, end)
+            };
+    }
+}
+
+/// Key of the table of a pair potential.
+pub static TABLE_FILE: Key = Key {
+    fallback: Fallback::Required,
+    ..key(
+        "file",
+        KeyValueKind::Text,
+        "",
+        "",
+        Some((&LAW, &["table"])),
+        "Table of the pair potential: rows of r (length), U (energy) and perhaps F = −dU/dr, which is compared with the rows; relative to the scene file. U is cubic between rows; pairs nearer than the first row end the run.",
+    )
+};
+
+/// Binds the columns of a law's table to the arrays of a program.
+pub(super) fn bind_table<'c>(memory: Memory<'c>, columns: &'c [Vec<f64>]) -> Memory<'c> {
+    let columns = LawTable::ARRAYS.into_iter().zip(columns);
+    columns.fold(memory, |memory, (array, column)| memory.read(Slot::new(array), column))
 }
 
 /// Creates a key of the pair law with a default.
@@ -173,14 +212,19 @@ impl PairLaw {
         self != PairLaw::None
     }
 
-    /// Distance at which the pair potential is `energies` ε, in diameters, to two decimals.
-    pub(super) fn nearest(self, parameters: &Parameters, energies: f64) -> f64 {
-        let closest = self.of(parameters, 1.0).potential().closest(energies * parameters.strength);
-        (100.0 * closest).round() / 100.0
+    /// Distance at which the pair potential between particles of a diameter (length) is `energies` ε, in diameters, to two decimals.
+    pub(super) fn nearest(self, parameters: &Parameters, diameter: f64, energies: f64) -> f64 {
+        let closest = self.of(parameters, diameter).potential().closest(energies * parameters.strength);
+        (100.0 * (closest / diameter)).round() / 100.0
     }
 }
 
 impl SweptLaw {
+    /// Columns of the law's table, for programs; empty without one.
+    pub(super) fn table_columns(&self) -> Vec<Vec<f64>> {
+        self.potential().table().map(|table| table.columns().into()).unwrap_or_default()
+    }
+
     /// True if particles attract each other anywhere up to the cut-off, sampled at a hundred distances.
     pub(super) fn is_attractive(&self) -> bool {
         (1..100).any(|place| self.potential().force(0.01 * f64::from(place) * self.cutoff()) < 0.0)
@@ -193,7 +237,7 @@ mod tests {
     use crate::method::{METHODS, load};
     use std::marker::PhantomData;
     use stripmine_kernels::backend::Precision;
-    use stripmine_kernels::isa::{Array, Memory, Slot};
+    use stripmine_kernels::isa::Array;
     use stripmine_kernels::law::{Law, ObservationRequest};
     use stripmine_kernels::mask::Mask;
     use stripmine_kernels::sweep::lattice::forces::Forces;
@@ -202,10 +246,15 @@ mod tests {
 
     const DIAMETER: f64 = 0.7;
 
-    /// Every law with pair forces, with ε = 1 and its word.
+    /// Every law with pair forces, with ε = 1 and its word. The table has the repulsion of Lennard-Jones from 0.6 to 1.1 σ.
     fn laws() -> impl Iterator<Item = (&'static str, SweptLaw)> {
+        let steep = LennardJones::new(1.0, DIAMETER);
+        let rows: Vec<[f64; 2]> =
+            (60..=110).map(|row| 0.01 * DIAMETER * f64::from(row)).map(|r| [r, steep.energy(r)]).collect();
+        let mut parameters = Parameters::default();
+        parameters.table.potential = Tabulated::new(&rows).unwrap();
         let all = PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs());
-        all.map(|(law, word)| (*word, law.of(&Parameters::default(), DIAMETER)))
+        all.map(move |(law, word)| (*word, law.of(&parameters, DIAMETER)))
     }
 
     /// For every law F = −dU/dr and U″ = −dF/dr, by central differences to 10⁻⁷, from 300 ε to the cut-off. Particles repel each other at σ.
@@ -215,7 +264,7 @@ mod tests {
         for (word, law) in laws() {
             let potential = law.potential();
             let (near, far) = (potential.closest(300.0), law.cutoff());
-            for step in 0..=400 {
+            for step in 0..400 {
                 let distance = near + (far - near) * f64::from(step) / 400.0;
                 let h = 1e-6 * distance;
                 let slope = |of: &dyn Fn(f64) -> f64| (of(distance - h) - of(distance + h)) / (2.0 * h);
@@ -240,13 +289,13 @@ mod tests {
     type SweepExecution = (Execution, InstructionSet);
 
     /// Pairs at given distances on a lattice, swept in one precision: repulsive force, energy and virial of each pair.
-    struct SweptPairs<'d, P>(&'d [f64], SweepExecution, PhantomData<P>);
+    struct SweptPairs<'d, P>(&'d [f64], &'d [Vec<f64>], SweepExecution, PhantomData<P>);
 
     impl<P: Precision> LawTask for SweptPairs<'_, P> {
         type Output = Vec<[f64; 3]>;
 
         fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Vec<[f64; 3]> {
-            let SweptPairs(distances, (execution, set), _) = self;
+            let SweptPairs(distances, columns, (execution, set), _) = self;
             let (mask, (sine, cosine)) = (Mask::square(2), 0.4f64.sin_cos());
             // Pairs are farther apart than the mask reaches.
             let shape = LatticeShape::new(5 * distances.len(), 5, &mask, [false; 2]).unwrap();
@@ -267,6 +316,7 @@ mod tests {
                 .write(Slot::new(Array::Fy), &mut fy)
                 .write(Slot::new(Array::Energy), &mut energy)
                 .write(Slot::new(Array::Virial), &mut virial);
+            let memory = bind_table(memory, columns);
             let forces = Forces::<P, L>::new(law, &mask, shape, frame, Coordinates::CellRelative);
             let program = Program::new(
                 forces.asked(ObservationRequest { energy: true, ..ObservationRequest::default() }),
@@ -285,13 +335,13 @@ mod tests {
     #[test]
     fn sweeps_match_the_shifted_potential() {
         for (word, law) in laws() {
-            let (potential, cutoff) = (law.potential(), law.cutoff());
+            let (potential, cutoff, columns) = (law.potential(), law.cutoff(), law.table_columns());
             let near = potential.closest(300.0);
             let distances: Vec<f64> =
                 (0..200).map(|step| near + (1.1 * cutoff - near) * f64::from(step) / 200.0).collect();
             let swept = |how| {
-                let double = law.with(SweptPairs::<f64>(&distances, how, PhantomData));
-                [double, law.with(SweptPairs::<f32>(&distances, how, PhantomData))]
+                let double = law.clone().with(SweptPairs::<f64>(&distances, &columns, how, PhantomData));
+                [double, law.clone().with(SweptPairs::<f32>(&distances, &columns, how, PhantomData))]
             };
             let oracle = swept((Execution::Chained, InstructionSet::Scalar));
             for execution in [Execution::Eager, Execution::Strip(64), Execution::Chained] {
@@ -323,10 +373,10 @@ mod tests {
     fn scene_bounds_follow_from_the_potential() {
         let parameters = Parameters::default();
         for (law, attracts) in [(PairLaw::Wca, false), (PairLaw::LennardJones, true)] {
-            assert_eq!([30.0, 100.0].map(|energies| law.nearest(&parameters, energies)), [0.82, 0.75]);
+            assert_eq!([30.0, 100.0].map(|energies| law.nearest(&parameters, 1.0, energies)), [0.82, 0.75]);
             assert_eq!(law.of(&parameters, DIAMETER).is_attractive(), attracts);
         }
-        assert_eq!(PairLaw::None.nearest(&parameters, 30.0), 0.0);
+        assert_eq!(PairLaw::None.nearest(&parameters, 1.0, 30.0), 0.0);
     }
 
     /// Calculated by hand, as for Lennard-Jones in `limits`: the hardest collision of 1000 particles of density 1 in a time of 1000 has 14.388 kT. With

@@ -48,6 +48,8 @@ pub(super) fn step_limits(scene: &LangevinScene, particles: CollidingParticles) 
             )
         }));
     }
+    // A table may attract at σ, or have no stiffness.
+    limits.retain(|limit: &StepLimit| limit.step.is_finite());
     if scene.bath.friction > 0.0 && scene.scheme != SchemeKind::Baoab {
         let step = 2.0 * mass / scene.bath.friction;
         limits.push(limit(
@@ -70,7 +72,7 @@ pub(super) fn lan17_step_bound(scene: &LangevinScene, diameter: f64, mass: f64) 
 /// Energy, in kT, of the hardest collision expected in a run: one in M collisions exceeds ln M.
 ///
 /// Each of N particles collides 2 √π n σ √(kT/m) times per unit of time at a number density n, as in a dilute gas. The logarithm hardly depends on this rate.
-fn hardest_collision_energy(
+pub(super) fn hardest_collision_energy(
     scene: &LangevinScene,
     CollidingParticles { diameter, mass, count, area }: CollidingParticles,
 ) -> f64 {
@@ -88,7 +90,7 @@ fn stiffest_pair_limit(
 ) -> (f64, f64) {
     let law = scene.law_at(diameter);
     let nearest = law.potential().closest((energy * scene.bath.temperature).max(scene.parameters.strength));
-    (2.0 * (0.5 * mass / law.potential().curvature(nearest)).sqrt(), nearest)
+    (2.0 * (0.5 * mass / law.potential().stiffness(nearest)).sqrt(), nearest)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod laws;
 mod limits;
 mod losses;
 pub mod options;
+mod pair_table;
 mod prepared;
 mod presets;
 mod programs;

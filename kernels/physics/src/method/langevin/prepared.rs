@@ -3,6 +3,7 @@
 use super::checked::CheckedLangevin;
 use super::chosen_search::ChosenSearch;
 use super::dynamics::BathDynamics;
+use super::laws::PairLaw;
 use super::losses;
 use super::options::PairSearchKind;
 use super::programs::{programs, with_bound_programs};
@@ -42,6 +43,7 @@ impl CheckedLangevin {
             domain: self.domain,
             seed: scene.start.seed(),
             start_file: scene.start.file().map(Path::to_owned),
+            law_file: (scene.law == PairLaw::Table).then(|| scene.parameters.table.origin()),
             facts: self.facts(),
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),

@@ -3,6 +3,7 @@
 use super::checked::CheckedLangevin;
 use super::chosen_search::widest_cell;
 use super::dynamics::BathDynamics;
+use super::laws::bind_table;
 use crate::method::pairwise::{Dynamics, LawTask};
 use crate::method::{BoundPrograms, ProgramCall, VectorProgram};
 use stripmine_kernels::isa::{Array, Memory, Slot};
@@ -64,11 +65,13 @@ pub(super) fn with_bound_programs(checked: &CheckedLangevin, task: &mut BoundPro
     }
     let (mut fx, mut fy) = (vec![0.0; shape.padded()], vec![0.0; shape.padded()]);
     let program = BathDynamics::of(checked).with_law(LatticeForceProgram(&mask, shape, frame));
+    let columns = checked.scene.law_at(checked.diameter).table_columns();
     let memory = Memory::new()
         .read(Slot::new(Array::X), &x)
         .read(Slot::new(Array::Y), &y)
         .write(Slot::new(Array::Fx), &mut fx)
         .write(Slot::new(Array::Fy), &mut fy);
+    let memory = bind_table(memory, &columns);
     task(&[ProgramCall { part: "forces", program: program.as_ref(), range: shape.swept() }], &memory);
     true
 }
@@ -94,6 +97,8 @@ mod tests {
     use crate::particles::{Particle, Particles};
     use crate::scene::SceneValues;
     use crate::words::Words;
+    use stripmine_kernels::law::lennard_jones::LennardJones;
+    use stripmine_kernels::law::potential::PairPotential;
     use stripmine_kernels::noise::{RandomPurpose, normals};
     use stripmine_kernels::{Execution, InstructionSet};
 
@@ -118,12 +123,21 @@ mod tests {
     /// Forces of the program over the whole lattice match the sum over all pairs to rounding, in eager, strip-mined and chained execution.
     #[test]
     fn program_forces_match_all_pairs() {
-        for (_, law) in PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs()) {
-            let overrides = [
-                format!("law.kind={law}"),
-                "particles.count=200".to_owned(),
-                "domain.sides=[18.0, 18.0]".to_owned(),
-            ];
+        let file = std::env::temp_dir().join(format!("stripmine-pair-table-{}.csv", std::process::id()));
+        let rows = (80..=112).map(|row| f64::from(row) / 100.0);
+        let repulsion = LennardJones::new(1.0, 1.0);
+        let rows: String = rows.map(|r| format!("{r},{}\n", repulsion.energy(r))).collect();
+        std::fs::write(&file, rows).unwrap();
+        for (kind, law) in PairLaw::ALL.iter().filter(|(law, _)| law.has_pairs()) {
+            let table = (*kind == PairLaw::Table).then(|| format!("law.file={}", file.display()));
+            let overrides: Vec<String> = table
+                .into_iter()
+                .chain([
+                    format!("law.kind={law}"),
+                    "particles.count=200".to_owned(),
+                    "domain.sides=[18.0, 18.0]".to_owned(),
+                ])
+                .collect();
             let values = SceneValues::load("langevin-dense", &overrides, &[&VOCABULARY]).unwrap();
             let checked = check_langevin_scene(values).unwrap();
             let (shape, frame, mask) = lattice(&checked).unwrap();
@@ -151,6 +165,7 @@ mod tests {
                 (x[image.cell], y[image.cell]) = (x[image.source], y[image.source]);
             }
             let program = BathDynamics::of(&checked).with_law(LatticeForceProgram(&mask, shape, frame));
+            let columns = checked.scene.law_at(checked.diameter).table_columns();
             let expected = forces_by_pairs(&checked, &particles);
             let largest = expected.iter().flatten().fold(0.0, |most: f64, it| most.max(it.abs()));
             assert!(largest > 0.1);
@@ -161,6 +176,7 @@ mod tests {
                     .read(Slot::new(Array::Y), &y)
                     .write(Slot::new(Array::Fx), &mut fx)
                     .write(Slot::new(Array::Fy), &mut fy);
+                let memory = bind_table(memory, &columns);
                 program.run(&memory, shape.swept(), execution, InstructionSet::best()).unwrap();
                 for (&cell, force) in cell_of.iter().zip(&expected) {
                     for (found, expected) in [fx[cell], fy[cell]].into_iter().zip(force) {

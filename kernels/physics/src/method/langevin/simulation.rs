@@ -2,6 +2,7 @@
 
 use super::checked::CheckedLangevin;
 use super::dynamics::{is_loss, stepper};
+use super::laws::PairLaw;
 use super::losses::Losses;
 use super::quantities::{LangevinObservation, OBSERVABLES};
 use crate::io::checkpoint::CheckpointColumn;
@@ -12,7 +13,8 @@ use crate::method::{
 };
 use crate::number::significant;
 use crate::observe::{AxisMotion, temperature};
-use crate::particles::{GrainStates, Particle, Particles};
+use crate::particles::{GrainStates, Particle, Particles, in_plane};
+use crate::quoted;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
@@ -104,9 +106,30 @@ impl LangevinSimulation {
     fn too_many(&self, failure: PhysicsFailure, lost: u64, most: u64) -> PhysicsFailure {
         let first = failure.culprits.first().map(|culprit| format!(", now {culprit}")).unwrap_or_default();
         let message = format!("{lost} particles were lost{first}; run.most_lost = {most}");
-        let remedy = self.remedy(&failure);
+        let remedy = self.below_table(&failure).unwrap_or_else(|| self.remedy(&failure));
         let failure = PhysicsFailure { message, remedy, kind: super::LOST, ..failure };
         failure.with([("lost", lost as f64), ("most_lost", most as f64)])
+    }
+
+    /// Returns the remedy for a pair nearer than the first row of the law's table.
+    fn below_table(&self, failure: &PhysicsFailure) -> Option<String> {
+        let (checked, first) = (&self.method.checked, failure.culprits.first()?);
+        let table = &checked.scene.parameters.table;
+        let least = table.potential.ends()[0];
+        let distance =
+            |other: &Particle| checked.domain.distance(in_plane(first.position), other.planar_position());
+        let particles = self.state.unwrapped();
+        let others = particles.all().iter().filter(|other| other.id != first.id);
+        let near = others.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        (checked.scene.law == PairLaw::Table && distance(near) < least).then(|| {
+            format!(
+                "it is {} from particle {}, nearer than {least}, the first row of {}: add rows at smaller distances, lower integrator.dt, or \
+                 allow losses with run.most_lost",
+                significant(distance(near), 4),
+                near.id,
+                quoted::path(table.path())
+            )
+        })
     }
 
     /// Returns the remedy for the losses of a failure.

@@ -51,6 +51,7 @@ impl CheckedGranularScene {
             domain: self.domain,
             seed: scene.start.seed(),
             start_file: scene.start.file().map(Path::to_owned),
+            law_file: None,
             facts: facts(&self),
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),

@@ -71,6 +71,7 @@ pub(super) fn check_nbody_scene(values: SceneValues) -> Result<CheckedNbody, Sce
     let all = of.iter().zip(1..).map(|(&(mass, position, velocity), number)| Particle {
         id: ids.get(number as usize - 1).copied().unwrap_or(number),
         kind: ParticleKind::Grain,
+        species: 0,
         position,
         velocity,
         angle: 0.0,

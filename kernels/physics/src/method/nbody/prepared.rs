@@ -34,6 +34,7 @@ impl CheckedNbody {
             domain: Domain { origin: [0.0; 3], sides: [BoxSide::Open; 3] },
             seed: scene.start.is_drawn().then_some(scene.start.seed),
             start_file: (scene.start.kind == StartKind::File).then(|| scene.start.file.path().to_owned()),
+            law_file: None,
             facts: self.facts(),
             warnings: self.warnings.clone(),
             choices: self.choices.clone(),
