@@ -12,6 +12,7 @@
 //! followed by whatever the method itself counts and checks after each of the two. Positions are relative to the centres of cells, so that single
 //! precision suffices in large boxes. No sum depends on the number of threads or the order of the discs in memory.
 
+mod anew;
 mod cells;
 mod columns;
 mod compiled;
