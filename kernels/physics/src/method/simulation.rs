@@ -82,7 +82,7 @@ pub trait Simulation: Send {
     /// Says why, if the snapshot is not one of this method and scene.
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
 
-    /// Changes a quantity now. The integrator, or the search for events, begins anew at the present state, and the work of the change is no error of
+    /// Changes a quantity now. The integrator, or the search for events, restarts at the present state, and the work of the change is no error of
     /// the energy balance.
     ///
     /// # Errors

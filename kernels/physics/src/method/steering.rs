@@ -1,4 +1,4 @@
-//! Changes that a user makes during a run. A change begins the integrator, or the search for events, anew at the state of that moment.
+//! Changes that a user makes during a run. A change restarts the integrator, or the search for events, at the state of that moment.
 
 use super::{PhysicsFailure, Snapshot};
 use crate::particles::{ParticleKind, Particles};
@@ -163,9 +163,9 @@ impl Change {
 /// Changes so far, as far as the future depends on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Steering {
-    /// Gravity in the place of the scene's (length/time²).
+    /// Gravity instead of the scene's (length/time²).
     pub(crate) gravity: Option<[f64; 2]>,
-    /// Temperature of the bath in the place of the scene's (energy).
+    /// Temperature of the bath instead of the scene's (energy).
     pub(crate) bath_temperature: Option<f64>,
     /// Work of all changes (energy): what they have added to the energy of the particles.
     pub(crate) work: f64,

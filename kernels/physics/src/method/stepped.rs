@@ -82,7 +82,7 @@ pub trait Stepwise: Send + Sized {
     /// As there.
     fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
 
-    /// Makes a change whose values are checked, and begins the integrator anew; returns the work of the change (energy).
+    /// Makes a change whose values are checked, and restarts the integrator; returns the work of the change (energy).
     ///
     /// # Errors
     /// As [`Simulation::steer`].

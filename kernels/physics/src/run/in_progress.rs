@@ -56,7 +56,7 @@ impl RunInProgress {
         let of_the_start = OfTheStart::new(job, folder);
         let (clock, state) = (simulation.clock(), simulation.snapshot());
         let mut recorder = RunRecorder::open(folder, existing, (job, of_the_start), simulation)?;
-        // The row begins another interval of means, and the simulation that was saved shall not notice.
+        // Its row has begun another interval of means: saving must not change the simulation.
         let file = folder.join(NAME);
         simulation.restore(clock, state).map_err(|reason| RunError::Foreign { file, reason })?;
         recorder.checkpoint(simulation)

@@ -363,7 +363,7 @@ impl Stepwise for LangevinRunState {
         }
         let particles = run.state.unwrapped();
         let motion = change.motion_of(&particles);
-        run.state.begin_anew(&motion)?;
+        run.state.restart(&motion)?;
         if change.quantity == SteeredQuantity::BathTemperature {
             run.method.checked.scene.bath.temperature = change.values[0];
             let (start, columns) = (run.method.start.clone(), run.state.columns());

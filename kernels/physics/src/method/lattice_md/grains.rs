@@ -80,17 +80,17 @@ impl SteppedGrains {
         self.stepping.finish()
     }
 
-    /// Begins the integrator anew at the end of the step, with the velocities and angular velocities of all discs and, if given, another gravity
+    /// Restarts the integrator at the end of the step, with the velocities and angular velocities of all discs and, if given, another gravity
     /// (length/time²).
     ///
     /// # Errors
     /// [`SteeringError`] if several ranks step the discs, or the forces violate a precondition.
-    pub(super) fn begin_anew(
+    pub(super) fn restart(
         &mut self,
         motion: &[([f64; 3], f64)],
         gravity: Option<[f64; 2]>,
     ) -> Result<(), SteeringError> {
-        self.stepping.begin_anew(motion)?;
+        self.stepping.restart(motion)?;
         if let Some(gravity) = gravity {
             self.set_gravity(gravity);
         }

@@ -206,7 +206,7 @@ impl Stepwise for GranularRun {
         let GranularObservation { now, balance, .. } = run.seen();
         let (before, gravity_work) = (internal_energy(now), balance.gravity_work);
         let motion = change.motion_of(&run.state.particles());
-        run.state.begin_anew(&motion, change.gravity())?;
+        run.state.restart(&motion, change.gravity())?;
         run.method.seen.take();
         if let Some(gravity) = change.gravity() {
             run.method.set_gravity(gravity);

@@ -12,7 +12,6 @@
 //! followed by whatever the method itself counts and checks after each of the two. Positions are relative to the centres of cells, so that single
 //! precision suffices in large boxes. No sum depends on the number of threads or the order of the discs in memory.
 
-mod anew;
 mod cells;
 mod columns;
 mod compiled;
@@ -24,6 +23,7 @@ mod forces;
 mod observing;
 mod ranked;
 mod removal;
+mod restart;
 mod saved;
 pub(crate) mod search;
 mod state;

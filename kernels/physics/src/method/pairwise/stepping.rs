@@ -86,7 +86,7 @@ pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
     ///
     /// # Errors
     /// [`SteeringError`] if a disc belongs to no cell, or several ranks step the discs.
-    fn begin_anew(&mut self, _motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
+    fn restart(&mut self, _motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
         let remedy = "use one rank";
         Err(SteeringError::refused("a simulation on several ranks cannot be changed", remedy))
     }
@@ -209,7 +209,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
         self.restore_state(steps, columns)
     }
 
-    fn begin_anew(&mut self, motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
+    fn restart(&mut self, motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
         Ok(single_threaded_if(self.is_small(), || self.begin_from_step_end(motion))?)
     }
 

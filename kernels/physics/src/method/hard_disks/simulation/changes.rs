@@ -1,4 +1,4 @@
-//! Changes of hard discs by the user: the search for events begins anew.
+//! Changes of hard discs by the user: the search for events restarts.
 
 use super::{HardDiskSimulation, IntervalMark, crossing, falling, potential};
 use crate::domain::BoxSide;

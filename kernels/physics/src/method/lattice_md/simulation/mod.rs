@@ -307,7 +307,7 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
         Ok(())
     }
 
-    fn begin_anew(&mut self, motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
+    fn restart(&mut self, motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
         let scale = scales(&self.model)[1];
         for (freedom, arrays) in STATE.iter().enumerate() {
             for (derivative, &array) in arrays.iter().enumerate().skip(1) {
