@@ -402,7 +402,12 @@ fn run_as_processes(
     faults: &[Fault],
     (folder, existing): (&Path, ExistingRun),
 ) -> Result<Ending, RunError> {
-    let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &built() };
+    let job = RunJob {
+        prepared: prepared.into(),
+        quantities: entry.quantities,
+        program: &built(),
+        is_open_ended: false,
+    };
     as_processes(prepared, faults, || run(job, folder, existing, &AtomicBool::new(false), |_, _| {}, |_| {}))
 }
 

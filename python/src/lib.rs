@@ -17,6 +17,8 @@ mod running;
 mod scene;
 mod scratch;
 mod simulation;
+mod steering;
+mod studies;
 mod table;
 mod tracing;
 

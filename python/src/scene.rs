@@ -7,8 +7,9 @@ use crate::json;
 use crate::overrides::{GivenOverrides, overrides};
 use crate::particles::Particles;
 use crate::run::Run;
-use crate::running::{begin_scratch, carry_out};
+use crate::running::{begin_scratch, carry_out, existing};
 use crate::simulation::Simulation;
+use crate::studies::study;
 use crate::table::{Table, TableColumn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -16,7 +17,7 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stripmine_physics::method::SectionCounts;
-use stripmine_physics::run::{ExistingRun, RunError, choices_of_the_run, forecast};
+use stripmine_physics::run::{RunError, choices_of_the_run, forecast};
 
 /// Scene that was read and checked. `stripmine.scene` makes it.
 #[pyclass(frozen, module = "stripmine")]
@@ -121,9 +122,30 @@ impl Scene {
     }
 
     /// Starts a simulation that is advanced step by step.
-    fn start(&self, py: Python<'_>) -> PyResult<Simulation> {
+    ///
+    /// With a folder `out` it is a run: rows, frames, checkpoints and changes are written there, as `run` does. `resume`, `overwrite` and
+    /// `other_version` are those of `run`.
+    #[pyo3(signature = (out = None, *, resume = false, overwrite = false, other_version = false))]
+    fn start(
+        &self,
+        py: Python<'_>,
+        out: Option<PathBuf>,
+        resume: bool,
+        overwrite: bool,
+        other_version: bool,
+    ) -> PyResult<Simulation> {
+        let existing = existing(py, [resume, overwrite, other_version])?;
         self.fits(py)?;
-        Simulation::start(py, self.checked.clone())
+        match out {
+            Some(out) => {
+                let checked = if resume { self.as_begun(py, &out)? } else { self.checked.clone() };
+                Simulation::recorded(py, checked, out, existing)
+            }
+            None if resume || overwrite => {
+                Err(exceptions::refused(py, "resume and overwrite need a folder, out"))
+            }
+            None => Simulation::start(py, self.checked.clone()),
+        }
     }
 
     /// Runs the whole scene into the folder `out`, as `stripmine run` does.
@@ -139,15 +161,7 @@ impl Scene {
         overwrite: bool,
         other_version: bool,
     ) -> PyResult<Run> {
-        let existing = match (resume, overwrite) {
-            (true, true) => return Err(exceptions::refused(py, "resume and overwrite exclude each other")),
-            (false, _) if other_version => {
-                return Err(exceptions::refused(py, "other_version needs resume=True"));
-            }
-            (true, _) => ExistingRun::Resume { other_version },
-            (_, true) => ExistingRun::Overwrite,
-            _ => ExistingRun::Refuse,
-        };
+        let existing = existing(py, [resume, overwrite, other_version])?;
         self.fits(py)?;
         let Some(folder) = out else {
             let scratch = begin_scratch(py)?;
@@ -175,6 +189,19 @@ impl Scene {
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         study(slf, "explain", given, options)
+    }
+
+    /// Comparison of `stripmine compare --json`.
+    #[pyo3(
+        signature = (*given, **options),
+        text_signature = "($self, against, *, command=None)"
+    )]
+    fn compare<'py>(
+        slf: &Bound<'py, Self>,
+        given: &Bound<'py, PyTuple>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        study(slf, "compare", given, options)
     }
 
     /// Tables of `stripmine chart accuracy`, by name.
@@ -207,16 +234,4 @@ impl Scene {
         let particles = self.checked.prepared.particles().len();
         format!("<Scene {}: {}, {particles} particles>", self.source.name(), self.method())
     }
-}
-
-/// Calls a study of `stripmine/_studies.py`, which defines its options.
-fn study<'py>(
-    scene: &Bound<'py, Scene>,
-    name: &str,
-    given: &Bound<'py, PyTuple>,
-    options: Option<&Bound<'py, PyDict>>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let py = scene.py();
-    let whole = PyTuple::new(py, [scene.as_any()])?.add(given)?;
-    py.import("stripmine._studies")?.getattr(name)?.call(whole.cast_into::<PyTuple>()?, options)
 }

@@ -172,10 +172,22 @@ class Scene:
         scenes without vector programs, such as hard discs.
         """
 
-    def start(self) -> Simulation:
+    def start(
+        self,
+        out: str | os.PathLike[str] | None = None,
+        *,
+        resume: bool = False,
+        overwrite: bool = False,
+        other_version: bool = False,
+    ) -> Simulation:
         """Starts a simulation that is advanced step by step; any number can be started.
 
-        Raises `SceneError` if memory is short, `SimulationError` if the start breaks a precondition.
+        With a folder `out` it is recorded as a run: `advance` writes rows, frames and checkpoints there as they are due, as `run` does, also beyond
+        the end of the scene, and changes (`Simulation.set`) are logged. `resume` continues from the newest checkpoint in the folder, or starts
+        if there is none; changes after that checkpoint are made again when `advance` comes to them. `overwrite` and `other_version` are those of
+        `run`.
+
+        Raises `SceneError` if memory is short, `SimulationError` if the start breaks a precondition, `RunError` if the folder cannot be used.
         """
 
     def run(
@@ -222,6 +234,16 @@ class Scene:
         Needs the command: `command`, the environment variable STRIPMINE, or `stripmine` on the path, in the version of this package.
         Ctrl-C stops it with `KeyboardInterrupt`; finished trials are reused by the next call. Raises `Error` if there is no such command,
         or it finds no plan.
+        """
+
+    def compare(
+        self, against: dict[str, Any], *, command: str | os.PathLike[str] | None = None
+    ) -> dict[str, Any]:
+        """Runs the scene in two configurations and compares them bit by bit: the data of `stripmine compare --json`.
+
+        `against` has the keys of the second configuration: `{"search.by": "sectors"}`. The data has `same_bits`, `first_difference` (the number
+        of the first sample that differs, or None) and `looks`, the samples, with the largest differences of positions and velocities. Needs the
+        command, as `explain` does.
         """
 
     def accuracy(
@@ -273,6 +295,53 @@ class Scene:
 class Simulation:
     """Running simulation, advanced step by step. Two threads cannot use it at the same time: the second gets `BusyError`."""
 
+    @staticmethod
+    def restore(folder: str | os.PathLike[str], *, other_version: bool = False) -> Simulation:
+        """Restores a simulation from the newest checkpoint in a folder, to the bit. Nothing is written there, so any number can be restored.
+
+        `save`, a run and a recorded simulation write checkpoints. Later changes of a recorded simulation are not made again: for that use
+        `scene.start(folder, resume=True)`. `other_version` also restores one of another version. Raises `RunError` if there is no checkpoint.
+        """
+
+    @property
+    def folder(self) -> Path | None:
+        """Folder of its run, as an absolute path; None if it is not recorded."""
+
+    def save(self, folder: str | os.PathLike[str] | None = None, *, overwrite: bool = False) -> None:
+        """Writes a checkpoint, from which `Simulation.restore` and `scene.start(folder, resume=True)` continue.
+
+        A recorded simulation is saved in its own folder; any other needs a `folder`, which gets a row, a frame and a checkpoint of this moment.
+        `overwrite` replaces a run there. Raises `RunError` if the folder cannot be written.
+        """
+
+    def finish(self) -> Run:
+        """Ends a recorded simulation: writes a last checkpoint, the last frame and the summary, and returns the run."""
+
+    def set(
+        self,
+        *,
+        velocities: Any = None,
+        angular_velocities: Any = None,
+        bath_temperature: Any = None,
+        gravity: Any = None,
+    ) -> None:
+        """Changes quantities at this moment, one after the other.
+
+        `velocities` (length/time) have the shape (N, D) and `angular_velocities` (1/time) the shape (N,), in the order of `particles()`; values of
+        wall discs must stay. `bath_temperature` is kT (energy), and `gravity` an acceleration (length/time²) of shape (2,). Granular discs have
+        velocities, angular velocities (with friction) and gravity, hard discs velocities and gravity (along closed sides), Langevin particles
+        velocities and the temperature of their bath, bodies velocities.
+
+        The integrator restarts at this state, as at the start of a scene. The work of a change is counted apart: energy errors and balances leave it
+        out, and `summary.json` has it as `work_of_changes`. Means of hard discs since the last row begin at the change.
+
+        A recorded simulation logs each change in `changes.csv`, exact to the bit. If it resumes from an earlier checkpoint, also with
+        `scene.run` or `stripmine run --resume`, the change is made again, and the results have the same bits.
+
+        Raises `Error` with the reason and a remedy if the method has no such quantity, for NaN and for another shape; that quantity and later
+        ones are not changed.
+        """
+
     def advance(
         self, *, steps: int | None = None, time: float | None = None, events: int | None = None
     ) -> None:
@@ -288,7 +357,8 @@ class Simulation:
     def observe(self) -> dict[str, float]:
         """Values of the quantities of the method, by name: the columns of `thermo.csv`, in the units `units`.
 
-        `compressibility` and `collision_rate` of hard discs are means since the start; rows have them since the previous row.
+        `compressibility` and `collision_rate` of hard discs are means since the start, or since the last change; rows, and recorded simulations,
+        have them since the previous row.
         """
 
     @property
@@ -380,6 +450,31 @@ class Run:
 
     def toml(self) -> str:
         """The scene as TOML, with every value and every choice explicit."""
+
+    def plot(
+        self,
+        columns: str | list[str] | None = None,
+        *,
+        color: str | None = None,
+        out: str | os.PathLike[str] | None = None,
+        overwrite: bool = False,
+        command: str | os.PathLike[str] | None = None,
+    ) -> list[Path]:
+        """Draws the run, as `stripmine plot` does, and returns the paths of the pictures (SVG and PNG).
+
+        `columns` names columns of `thermo.csv`, by default all that change; `color` what colours the particles. `out` is the folder of the
+        pictures, by default beside the run's, with `.plots` added. Needs the command, as `Scene.explain` does. Raises `Error` if it draws nothing.
+        """
+
+    def film(
+        self,
+        *,
+        color: str | None = None,
+        out: str | os.PathLike[str] | None = None,
+        overwrite: bool = False,
+        command: str | os.PathLike[str] | None = None,
+    ) -> Path:
+        """Makes the film of the trajectory beside the pictures of `plot`, a page for a browser, and returns its path."""
 
     def summary(self) -> dict[str, Any]:
         """Contents of `summary.json`. Raises `RunError` before the run has ended."""

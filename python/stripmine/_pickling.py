@@ -46,7 +46,7 @@ def register():
     copyreg.pickle(_stripmine.Particles, _by_attributes(_particles, _stripmine._attributes_of_particles))
     copyreg.pickle(_stripmine.Frame, _by_attributes(_frame, _stripmine._attributes_of_a_frame))
     for kind, message in (
-        (_stripmine.Simulation, "a running simulation cannot be pickled or copied: pass the scene, and start it there"),
+        (_stripmine.Simulation, "a running simulation cannot be pickled or copied: pass the scene, and start it there, or a folder of save()"),
         (_stripmine.Frames, "an open trajectory cannot be pickled or copied: pass the run, or list(run.frames())"),
         (_stripmine.Table, "a table cannot be pickled or copied: pass table.to_pandas(), or its columns, table[name]"),
     ):

@@ -56,9 +56,43 @@ def scan(scene, over, seeds=1, until=None, *, out=None, resume=False, overwrite=
     return _stripmine._table(columns)
 
 
+def compare(scene, against, *, command=None):
+    """The comparison that the command prints."""
+    overrides = [f"--against={key}={_value(value)}" for key, value in against.items()]
+    with tempfile.TemporaryDirectory(prefix="stripmine-") as folder:
+        return _printed(scene, ["compare"], {}, None, Path(folder), command, overrides)
+
+
+def plot(run, columns=None, *, color=None, out=None, overwrite=False, command=None):
+    """Paths of the pictures that the command draws."""
+    columns = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
+    return _drawn(run, {"columns": columns, "color": color}, [], out, overwrite, command)
+
+
+def film(run, *, color=None, out=None, overwrite=False, command=None):
+    """Path of the film that the command makes."""
+    return _drawn(run, {"color": color}, ["--film"], out, overwrite, command)[-1]
+
+
+def _drawn(run, options, flags, out, overwrite, command):
+    """Paths of the files that `plot` writes for a run, by default to a folder beside that of the run."""
+    folder = Path(run.folder)
+    if out is None and run._is_temporary:
+        raise Error("the run is in a temporary folder\n  help: pass out=, a folder for the pictures", "usage")
+    out = folder.with_name(f"{folder.stem}.plots") if out is None else Path(out).absolute()
+    options = [f"--{name}={value}" for name, value in {**options, "out": out}.items() if value is not None]
+    flags = [*flags, "--overwrite"] if overwrite else flags
+    return [Path(file) for file in printed_data(["plot", str(folder), *options, *flags], folder, command)["files"]]
+
+
+def _value(value):
+    """A value of a key as the command takes it."""
+    return json.dumps(value.tolist() if hasattr(value, "tolist") else value)
+
+
 def _listed(key, values):
     """Values of a key as the command takes them."""
-    texts = [json.dumps(value.item() if hasattr(value, "item") else value) for value in values]
+    texts = [_value(value) for value in values]
     if not texts:
         raise ValueError(f"{key} has no values: expected a list of at least one")
     return ",".join(texts)

@@ -106,9 +106,10 @@ class Commands(InFolder):
         self.refused("cannot be run", command=self.folder / "command")
 
     def test_signatures_match_the_studies(self):
-        for name in ("explain", "accuracy", "scan"):
+        ways = [(stripmine.Scene, name) for name in ("explain", "accuracy", "scan", "compare")]
+        for kind, name in [*ways, (stripmine.Run, "plot"), (stripmine.Run, "film")]:
             ours = list(inspect.signature(getattr(_studies, name)).parameters.values())[1:]
-            shown = list(inspect.signature(getattr(stripmine.Scene, name)).parameters.values())[1:]
+            shown = list(inspect.signature(getattr(kind, name)).parameters.values())[1:]
             self.assertEqual(ours, shown)
         with self.assertRaisesRegex(TypeError, "budgte"):
             self.scene.accuracy(budgte=3)

@@ -183,7 +183,12 @@ impl Case {
             is_interrupted.store(Some(words) == stop, Ordering::Relaxed);
         };
         let existing = ExistingRun::Resume { other_version: false };
-        let job = RunJob { prepared: prepared.into(), quantities: self.entry.quantities, program: &built() };
+        let job = RunJob {
+            prepared: prepared.into(),
+            quantities: self.entry.quantities,
+            program: &built(),
+            is_open_ended: false,
+        };
         let ending = run(job, folder, existing, &is_interrupted, progress, |_| {});
         let ending = ending.unwrap_or_else(|error| panic!("{}: {error}", self.label()));
         (matches!(ending, Ending::Done(_)), words)

@@ -45,7 +45,7 @@
 //!     dirty: false,
 //!     target: "any".to_owned(),
 //! };
-//! let job = RunJob { prepared: prepared.into(), quantities: method.quantities, program: &program };
+//! let job = RunJob { prepared: prepared.into(), quantities: method.quantities, program: &program, is_open_ended: false };
 //! run(job, &folder, ExistingRun::Overwrite, &AtomicBool::new(false), |_, _| (), |_| ())?;
 //!
 //! let averages = averages_of(&[FinishedRun::read(&folder, METHODS)?])?;

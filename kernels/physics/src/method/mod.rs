@@ -17,6 +17,7 @@ mod several;
 mod simulation;
 mod snapshot;
 mod start_temperature;
+mod steering;
 mod stepped;
 pub mod throughput;
 mod trials;
@@ -40,6 +41,8 @@ pub use several::{DISMISSED, RANK_ENDED};
 pub use simulation::{RunWarning, Simulation};
 pub use snapshot::Snapshot;
 pub(crate) use start_temperature::START_TEMPERATURE;
+pub use steering::{Change, SteeredQuantity, Steering, SteeringError};
+pub(crate) use steering::{WORK_OF_CHANGES, has_no};
 pub use stepped::{Stepped, SteppedState, Stepwise};
 pub use trials::{
     AxisSetting, ChoiceEffect, DistanceUnit, EncounterGeometry, EnergyBalanceNames, Parameter,

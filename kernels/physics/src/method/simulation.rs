@@ -3,6 +3,7 @@
 use super::clock::{Clock, Until};
 use super::failure::PhysicsFailure;
 use super::snapshot::Snapshot;
+use super::steering::{Change, SteeringError, has_no};
 use crate::particles::{Particles, PerParticle};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -80,6 +81,16 @@ pub trait Simulation: Send {
     /// # Errors
     /// Says why, if the snapshot is not one of this method and scene.
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
+
+    /// Changes a quantity now. The integrator, or the search for events, restarts at the present state, and the work of the change is no error of
+    /// the energy balance.
+    ///
+    /// # Errors
+    /// [`SteeringError`] if the method has no such quantity or the values do not suit it; then nothing has changed, unless the physics failed.
+    fn steer(&mut self, change: &Change) -> Result<(), SteeringError> {
+        let remedy = "start another scene with the new values";
+        Err(has_no("this method", change.quantity, "its simulations cannot be changed", remedy))
+    }
 
     /// Seconds spent in each phase since the start or the last reset, by name.
     fn phases(&self) -> BTreeMap<&'static str, f64>;

@@ -13,9 +13,10 @@ use super::observed::values;
 use super::pairwise::Elapsed;
 use super::simulation::{RunWarning, Simulation};
 use super::snapshot::Snapshot;
+use super::steering::{Change, Steering, SteeringError, WORK_OF_CHANGES, has_no};
 use super::{MethodObservable, PerParticle, RANK_ENDED};
 use crate::io::checkpoint::CheckpointColumn;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -81,6 +82,24 @@ pub trait Stepwise: Send + Sized {
     /// As there.
     fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String>;
 
+    /// Makes a change whose values are checked, and restarts the integrator; returns the work of the change (energy).
+    ///
+    /// # Errors
+    /// As [`Simulation::steer`].
+    fn change(_run: &mut Stepped<Self>, change: &Change) -> Result<f64, SteeringError> {
+        let remedy = "start another scene with the new values";
+        Err(has_no("this method", change.quantity, "its simulations cannot be changed", remedy))
+    }
+
+    /// Takes up the changes of a checkpoint, before its state is [restored](Self::restore). The integrator last began after `begun` steps.
+    ///
+    /// # Errors
+    /// Says why, if this simulation has no such quantity.
+    fn take_up(_run: &mut Stepped<Self>, steering: &Steering, begun: u64) -> Result<(), String> {
+        let is_unchanged = (*steering, begun) == (Steering::default(), 0);
+        if is_unchanged { Ok(()) } else { Err("it has changes, which this method does not make".to_owned()) }
+    }
+
     /// As [`Simulation::phases`].
     fn phases(run: &Stepped<Self>) -> BTreeMap<&'static str, f64> {
         BTreeMap::from([("steps", run.seconds)])
@@ -122,12 +141,17 @@ pub struct Stepped<M: Stepwise> {
     pub method: M,
     /// Seconds spent on steps.
     pub seconds: f64,
+    /// Changes so far.
+    pub(crate) steering: Steering,
 }
+
+/// Name of the step at which the integrator last began, in a checkpoint.
+const BEGUN: &str = "steered.begun";
 
 impl<M: Stepwise> Stepped<M> {
     /// Simulation of a state.
     pub fn new(state: M::State, method: M) -> Self {
-        Stepped { state, method, seconds: 0.0 }
+        Stepped { state, method, seconds: 0.0, steering: Steering::default() }
     }
 
     /// Progress so far.
@@ -191,12 +215,28 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     fn snapshot(&self) -> Snapshot {
         let mut kept = Snapshot { columns: self.state.columns(), ..Snapshot::default() };
         M::save_into(self, &mut kept);
+        self.steering.keep(&mut kept);
+        if self.state.elapsed().begun > 0 {
+            kept.add_count(BEGUN, self.state.elapsed().begun);
+        }
         self.unless_rank_lost(kept).unwrap_or_default()
     }
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         clock.check_step_clock(self.state.elapsed().dt)?;
+        let is_begun = snapshot.counters.contains_key(BEGUN);
+        let begun = if is_begun { snapshot.count_at_most(BEGUN, clock.steps)? } else { 0 };
+        self.steering = Steering::of(&snapshot)?;
+        let steering = self.steering;
+        M::take_up(self, &steering, begun)?;
         M::restore(self, clock, snapshot)
+    }
+
+    fn steer(&mut self, change: &Change) -> Result<(), SteeringError> {
+        change.check(&self.particles())?;
+        let work = M::change(self, change)?;
+        self.steering.add(change, work);
+        Ok(())
     }
 
     fn phases(&self) -> BTreeMap<&'static str, f64> {
@@ -217,7 +257,10 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     }
 
     fn summary(&self) -> Map<String, Value> {
-        let entries = M::summary(self).into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+        let is_changed = self.steering != Steering::default() || self.state.elapsed().begun > 0;
+        let work = is_changed.then(|| (WORK_OF_CHANGES, json!(self.steering.work)));
+        let entries = M::summary(self).into_iter().chain(work);
+        let entries = entries.map(|(name, value)| (name.to_owned(), value)).collect();
         self.unless_rank_lost(entries).unwrap_or_default()
     }
 

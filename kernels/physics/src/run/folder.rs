@@ -1,5 +1,6 @@
 //! Files of a run, and their list in its folder: `run.files`.
 
+use super::changes::CHANGES;
 use crate::io::FORMATS;
 use crate::io::checkpoint::NAME as CHECKPOINT;
 use crate::io::owned_folder::{FolderContent, FolderKind};
@@ -35,8 +36,11 @@ pub(super) const RUN: FolderKind = FolderKind {
 
 fn is_own(name: &str) -> bool {
     let formats = FORMATS.iter().map(|it| it.file);
-    let mut all =
-        ALWAYS.into_iter().chain([THERMO, EVENTS]).chain(formats).chain(OBSERVABLES.iter().map(|it| it.file));
+    let mut all = ALWAYS
+        .into_iter()
+        .chain([THERMO, EVENTS, CHANGES])
+        .chain(formats)
+        .chain(OBSERVABLES.iter().map(|it| it.file));
     all.any(|own| own == name)
 }
 

@@ -1,9 +1,10 @@
 //! Execution of a run: advance, observe, record; checkpoints, interruption, resumption. A run writes a folder of its own: `scene.toml`,
-//! `thermo.csv`, `summary.json`, `run.checkpoint`, a list of these files (`run.files`), and the particles in each format
+//! `thermo.csv`, `summary.json`, `run.checkpoint`, a list of these files (`run.files`), `changes.csv` if the user changes anything, and the particles in each format
 //! ([`FORMATS`](crate::io::FORMATS)) that the scene requests. On request it writes a row for each event (`events.csv`) and averages of the
 //! structure.
 
 mod block_means;
+mod changes;
 mod finished;
 mod folder;
 pub mod forecast;
@@ -11,6 +12,7 @@ mod functions;
 mod goal;
 mod growing;
 mod identity;
+mod in_progress;
 mod moments;
 mod points;
 mod recorder;
@@ -23,6 +25,7 @@ mod tests;
 pub use finished::{FinishedError, FinishedRun, averages_of};
 pub use functions::{FunctionPoint, Number, StructureFunction, function_of, functions_of};
 pub use identity::{check_scene_of_folder, choices_of_the_run};
+pub use in_progress::RunInProgress;
 pub use points::{ScenePoint, ScenePoints, points_of};
 pub use structured::StructureSummary;
 pub use summary::Summary;
@@ -38,9 +41,7 @@ use crate::origin::Origin;
 use crate::quoted;
 use crate::reported::{ErrorClass, FilePlace, Reported};
 use crate::scene::{MeanTarget, SceneErrors, Width};
-use crate::signals;
 use folder::RUN;
-use recorder::{OfTheStart, RunRecorder};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -191,6 +192,19 @@ pub enum RunError {
     /// The rows of earlier sessions are invalid.
     #[error(transparent)]
     Rows(#[from] TableError),
+    /// The log of changes is invalid.
+    #[error(
+        "{}, line {line}: {reason}; restore the file, or start again with --overwrite",
+        quoted::path(file)
+    )]
+    Changes {
+        /// Path of the log.
+        file: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// Mistake.
+        reason: String,
+    },
     /// A growing file of earlier sessions is invalid.
     #[error(transparent)]
     Growing(#[from] GrowingFileError),
@@ -208,7 +222,7 @@ impl Reported for RunError {
             | RunError::OtherScene { .. }
             | RunError::OtherDiscs { .. }
             | RunError::OtherVersion { .. } => ErrorClass::Usage,
-            RunError::Foreign { .. } => ErrorClass::Checkpoint,
+            RunError::Foreign { .. } | RunError::Changes { .. } => ErrorClass::Checkpoint,
             RunError::Unreached { .. } => ErrorClass::Precondition,
             RunError::Folder(error) => error.class(),
             RunError::Rows(error) => error.class(),
@@ -245,6 +259,9 @@ impl Reported for RunError {
             RunError::Checkpoint(CheckpointError { file, .. }) | RunError::Foreign { file, .. } => {
                 Some(FilePlace::at(file))
             }
+            RunError::Changes { file, line, .. } => {
+                Some(FilePlace { line: Some(*line as usize), ..FilePlace::at(file) })
+            }
             _ => self.inner_error()?.place(),
         }
     }
@@ -277,6 +294,8 @@ pub struct RunJob<'j> {
     pub quantities: &'static [ObservedQuantity],
     /// Program that runs it, for the record.
     pub program: &'j Origin,
+    /// True if the caller advances the run, beyond the end of the scene, too.
+    pub is_open_ended: bool,
 }
 
 /// Prepared scene of a run: kept by the caller, or given to the run, which then releases the particles at the start as soon as the simulation
@@ -353,57 +372,26 @@ pub fn run(
     mut progress: impl FnMut(u64, u64),
     notice: impl FnMut(&str),
 ) -> Result<Ending, RunError> {
-    job.prepared.memory.fits("scene")?;
-    // Refusals come before expensive work.
-    starts_from_beginning(folder, existing)?;
-    let of_the_start = OfTheStart::new(&job, folder);
-    let mut simulation = job.prepared.start().map_err(RunError::Start)?;
+    let (mut running, mut simulation) = RunInProgress::open(&mut job, folder, existing, notice)?;
     let job = &job;
-    // An interrupted start would leave a folder without a checkpoint; a resumed run has one.
-    let held = (!matches!(existing, ExistingRun::Resume { .. })).then(signals::hold);
-    let mut recorder = RunRecorder::open(folder, existing, (job, of_the_start), simulation.as_mut())?;
-    let _held = held.unwrap_or_else(signals::hold);
-    recorder.new_notes().iter().map(String::as_str).for_each(notice);
     let until = job.prepared.schedule.until;
-    let from = simulation.clock();
     let mut strides = STRIDES;
-    let start = Instant::now();
-    while !(until.has_been_reached(&simulation.clock()) || recorder.has_reached_goal()) {
+    while !(until.has_been_reached(&simulation.clock()) || running.recorder.has_reached_goal()) {
         if interrupted.load(Ordering::Relaxed) {
-            recorder.checkpoint(simulation.as_ref())?;
+            running.checkpoint(simulation.as_ref())?;
             return Ok(Ending::Interrupted { clock: simulation.clock() });
         }
-        let mut moments = vec![until, stride(until, strides).after(&simulation.clock())];
-        moments.extend(recorder.due());
+        let moments = [until, stride(until, strides).after(&simulation.clock())];
         let begun = Instant::now();
-        let advanced = simulation.advance(&moments, interrupted);
+        running.advance(job, simulation.as_mut(), &moments, interrupted)?;
         if begun.elapsed() > LONGEST_STRIDE {
             strides = strides.saturating_mul(2);
-        }
-        recorder.log(simulation.as_mut())?;
-        let is_over = until.has_been_reached(&simulation.clock());
-        let failed = match advanced.and_then(|()| if is_over { simulation.check() } else { Ok(()) }) {
-            Ok(()) => match recorder.write_due_outputs(simulation.as_mut()) {
-                Err(RunError::Lost(failure)) => Some(failure),
-                written => written?,
-            },
-            Err(failure) => Some(failure),
-        };
-        if let Some(failure) = failed {
-            let seconds = start.elapsed().as_secs_f64();
-            let averages = recorder.averages();
-            let summary = Summary::of(job, simulation.as_ref(), averages, from, seconds, Some(&failure));
-            recorder.write_failure(simulation.as_ref(), summary)?;
-            simulation.check_ranks().map_err(RunError::Lost)?;
-            return Err(RunError::Physics { failure, snapshot: recorder.trajectory_path() });
         }
         let (done, all) = until.progress(&simulation.clock());
         progress(done, all);
     }
-    let seconds = start.elapsed().as_secs_f64();
-    let summary = Summary::of(job, simulation.as_ref(), recorder.averages(), from, seconds, None);
-    let summary = recorder.finish(simulation.as_ref(), summary)?;
-    if let Some((goal, known)) = recorder.missed_goal() {
+    let summary = running.finish(job, simulation.as_ref())?;
+    if let Some((goal, known)) = running.recorder.missed_goal() {
         let (target, bound) = (goal.target().clone(), until);
         return Err(RunError::Unreached {
             folder: folder.to_owned(),

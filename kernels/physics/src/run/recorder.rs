@@ -1,5 +1,8 @@
 //! Folder of a run and the schedule of its files.
 
+mod changed;
+
+use super::changes::{CHANGE_COUNT, CHANGES, ChangeLog};
 use super::finished::rows_of;
 use super::folder::{
     ALWAYS, CHECKPOINTS, LONGEST_SCENE, RUN, RunFolder, SCENE, SUMMARY, THERMO, files_to_resume,
@@ -43,6 +46,8 @@ pub(super) struct RunRecorder {
     growing: GrowingFiles,
     /// Dropped after what grows in it: until the last frame is written, no other process may have the folder.
     folder: RunFolder,
+    /// Changes by the user.
+    pub(super) changes: ChangeLog,
     /// Structure functions.
     structured: StructureSampler,
     /// Rows of observables, those of earlier sessions included.
@@ -121,7 +126,9 @@ impl RunRecorder {
         let header = header_of(&job.prepared, job.quantities, simulation);
         let growing = GrowingFiles::begin(&folder, &job.prepared, &header)?;
         let clock = simulation.clock();
-        let mut recorder = RunRecorder::with(folder, (job, of_the_start), (growing, header), &clock, notes);
+        let changes = ChangeLog::begin(folder.file(CHANGES));
+        let files = (growing, header, changes);
+        let mut recorder = RunRecorder::with(folder, (job, of_the_start), files, &clock, notes);
         recorder.new_notes = recorder.notes.len();
         recorder.write_scene()?;
         if let Some(failure) = recorder.add_thermo_row(simulation)? {
@@ -134,7 +141,7 @@ impl RunRecorder {
     fn with(
         folder: RunFolder,
         (&RunJob { ref prepared, quantities, .. }, of_the_start): (&RunJob<'_>, OfTheStart),
-        (growing, header): (GrowingFiles, RunHeader),
+        (growing, header, changes): (GrowingFiles, RunHeader, ChangeLog),
         clock: &Clock,
         notes: Vec<String>,
     ) -> RunRecorder {
@@ -152,6 +159,7 @@ impl RunRecorder {
             growing,
             structured,
             rows: AveragedRows::new(quantities),
+            changes,
             goal: RunGoal::of(prepared, quantities),
             notes,
             new_notes: 0,
@@ -173,11 +181,9 @@ impl RunRecorder {
         let newest = folder.file(NAME);
         let foreign = |reason: String| RunError::Foreign { file: latest.file.clone(), reason };
         let mut checkpoint = latest.checkpoint;
-        let events = match checkpoint.counters.remove(EVENT_COUNT) {
-            Some(CheckpointCounter::Count(events)) => events,
-            _ => 0,
-        };
+        let [events, made] = [EVENT_COUNT, CHANGE_COUNT].map(|name| take_count(&mut checkpoint, name));
         let clock = Clock { steps: checkpoint.step, time: checkpoint.time, events };
+        let changes = ChangeLog::resume(folder.file(CHANGES), made)?;
         let said = checkpoint.origin.get("notes").map_or(0, |notes| notes.lines().count());
         let mut notes = of_the_start.identity.check(folder.path(), &checkpoint, clock, other_version)?;
         notes.extend(session);
@@ -188,7 +194,7 @@ impl RunRecorder {
             ));
         }
         let asked = prepared.schedule.until;
-        if asked.is_exceeded(&clock) {
+        if asked.is_exceeded(&clock) && !job.is_open_ended {
             let done = match asked {
                 Until::Steps(_) => Until::Steps(clock.steps),
                 Until::Time(_) => Until::Time(clock.time),
@@ -214,7 +220,8 @@ impl RunRecorder {
         let last = FORMATS.iter().filter(|format| matches!(format.writing, FrameWriting::Last(_)));
         let mut of_the_end = last.map(|format| format.file).chain(OBSERVABLES.iter().map(|it| it.file));
         of_the_end.try_for_each(|name| folder.remove_own(name))?;
-        let mut recorder = RunRecorder::with(folder, (job, of_the_start), (growing, header), &clock, notes);
+        let files = (growing, header, changes);
+        let mut recorder = RunRecorder::with(folder, (job, of_the_start), files, &clock, notes);
         recorder.new_notes = recorder.notes.len() - said;
         recorder.checkpointed = (recorder.new_notes == 0).then_some(clock);
         recorder.write_scene()?;
@@ -361,6 +368,9 @@ impl RunRecorder {
         let mut counters = self.growing.mark()?;
         counters.insert("bits".to_owned(), CheckpointCounter::Count(BITS));
         counters.insert(EVENT_COUNT.to_owned(), CheckpointCounter::Count(clock.events));
+        if self.changes.made > 0 {
+            counters.insert(CHANGE_COUNT.to_owned(), CheckpointCounter::Count(self.changes.made));
+        }
         let mut snapshot = unless_rank_lost(simulation, simulation.snapshot())?;
         self.structured.keep(&mut snapshot);
         counters.extend(snapshot.counters);
@@ -412,6 +422,14 @@ impl RunRecorder {
         })?;
         self.folder.check_still_there(files_to_resume(self.checkpointed.is_some()))?;
         Ok(summary)
+    }
+}
+
+/// Takes a count out of a checkpoint; 0 if there is none.
+fn take_count(checkpoint: &mut Checkpoint, name: &str) -> u64 {
+    match checkpoint.counters.remove(name) {
+        Some(CheckpointCounter::Count(count)) => count,
+        _ => 0,
     }
 }
 

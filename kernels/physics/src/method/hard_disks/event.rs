@@ -94,6 +94,11 @@ impl Arena {
         Arena { domain, space: Space::new([0, 1].map(period), gravity), law, keeps_kinetic }
     }
 
+    /// Returns the arena with another gravity (length/time²); the discs do not grow.
+    pub(crate) fn with_gravity(self, gravity: [f64; 2]) -> Arena {
+        Arena::new(self.domain, gravity, self.law)
+    }
+
     /// Returns the arena with growing discs.
     pub(crate) fn growing(self, growth: RadiusGrowth) -> Arena {
         Arena { space: self.space.growing(growth), ..self }

@@ -27,6 +27,11 @@ impl CrossingCounter {
         *before = *now;
     }
 
+    /// Replaces the states after the last events.
+    pub(super) fn take_discs(&mut self, discs: &[FlyingDisc]) {
+        self.before.copy_from_slice(discs);
+    }
+
     /// Number of periods that a disc has crossed at a time after its last event, relative to its image inside the box.
     pub(super) fn image(&self, arena: &Arena, number: usize, time: f64) -> [i32; 2] {
         self.crossings.image(&arena.domain, number, self.before[number].at(&arena.space, time))
@@ -54,7 +59,7 @@ impl CrossingCounter {
         let mut columns: Vec<(String, CheckpointColumn)> = Crossings::among(columns).cloned().collect();
         Crossings::begin_in(&mut columns, discs.len());
         self.crossings.restore_counts(&columns)?;
-        self.before.copy_from_slice(discs);
+        self.take_discs(discs);
         Ok(())
     }
 }

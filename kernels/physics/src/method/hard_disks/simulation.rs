@@ -1,5 +1,7 @@
 //! Simulation of hard discs: advances the engine event by event and observes the discs.
 
+mod changes;
+
 use super::checked::StartingDiscs;
 use super::collapse::{CollapseMonitor, EndlessCollisions};
 use super::collision_log::Log;
@@ -15,7 +17,10 @@ use super::restored::check_restored_discs;
 use super::sums::{CollisionTotals, IntervalMark, IntervalMeans, TotalMotion};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::observed::values;
-use crate::method::{Clock, Culprit, PerParticle, PhysicsFailure, RunWarning, Simulation, Snapshot, Until};
+use crate::method::{
+    Change, Clock, Culprit, PerParticle, PhysicsFailure, RunWarning, Simulation, Snapshot, Steering,
+    SteeringError, Until, WORK_OF_CHANGES,
+};
 use crate::number::{count_with_noun, significant};
 use crate::observe::relative_energy_error;
 use crate::particles::{GrainStates, Particle, Particles};
@@ -31,18 +36,23 @@ const INTERRUPT_CHECK_INTERVAL: u64 = 4096;
 /// Running simulation of hard discs.
 pub(super) struct HardDiskSimulation {
     engine: Box<dyn EventEngine>,
+    configuration: EngineConfiguration,
     arena: Arena,
     clock: Clock,
     totals: CollisionTotals,
     watch: CollapseMonitor,
-    /// Sums at the previous row.
+    /// Sums at the previous row or change.
     row: IntervalMark,
+    /// Sums at the last change, or at the start.
+    since: IntervalMark,
+    /// Changes so far.
+    steering: Steering,
     /// Kinetic and potential energy at the start.
     start: [f64; 2],
     /// True if the idleness check has run since the last event and proved nothing.
     may_meet: bool,
     identities: DiscIdentities,
-    /// Energy available to the discs at the start, for the check of a checkpoint.
+    /// Energy available to the discs at the start or at the last change, for the check of a checkpoint.
     available_energy: f64,
     /// Rows of collisions, if requested.
     log: Option<Log>,
@@ -64,7 +74,7 @@ impl HardDiskSimulation {
     /// Starts the simulation from the discs of a checked scene.
     pub(super) fn new(
         arena: Arena,
-        engine: EngineConfiguration,
+        configuration: EngineConfiguration,
         StartingDiscs { discs, identities, energy: available_energy }: StartingDiscs,
         observed: RecordOptions,
     ) -> Result<HardDiskSimulation, PhysicsFailure> {
@@ -73,12 +83,15 @@ impl HardDiskSimulation {
         let watch = CollapseMonitor::new(crossing(discs.iter()), falling(&discs, &arena), discs.len());
         let followed = observed.follows.then(|| CrossingCounter::new(&arena, discs.clone()));
         let mut simulation = HardDiskSimulation {
-            engine: engine.engine(arena, discs, 0.0),
+            engine: configuration.engine(arena, discs, 0.0),
+            configuration,
             arena,
             clock: Clock::default(),
             totals: CollisionTotals::default(),
             watch,
             row: IntervalMark::default(),
+            since: IntervalMark::default(),
+            steering: Steering::default(),
             start,
             identities,
             available_energy,
@@ -252,8 +265,9 @@ impl HardDiskSimulation {
         let (kinetic, gravitational) = (motion.kinetic(), potential(self.discs(), &self.arena, time));
         let [kinetic_at_start, potential_at_start] = self.start;
         let CollisionTotals { collisions, virial, work, .. } = self.totals;
-        let change = (kinetic - kinetic_at_start) + (gravitational - potential_at_start) - work;
-        let start = kinetic_at_start + potential_at_start;
+        let given = self.steering.work;
+        let change = (kinetic - kinetic_at_start) + (gravitational - potential_at_start) - work - given;
+        let start = kinetic_at_start + potential_at_start + given;
         let seen = HardDiskObservation {
             clock: self.clock,
             collisions,
@@ -362,7 +376,8 @@ impl Simulation for HardDiskSimulation {
         kept.columns.extend(FIELDS.map(column));
         kept.add_column("events", CheckpointColumn::U64(self.discs().map(|disc| disc.events).collect()));
         self.totals.keep(&mut kept);
-        self.row.keep(&mut kept);
+        self.row.keep("row", &mut kept);
+        self.keep_changes(&mut kept);
         self.watch.keep(&mut kept);
         kept.columns.extend(self.followed.iter().flat_map(CrossingCounter::columns));
         kept
@@ -370,6 +385,7 @@ impl Simulation for HardDiskSimulation {
 
     fn restore(&mut self, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
         clock.check_event_clock()?;
+        self.take_changes(&snapshot)?;
         let mut discs: Vec<FlyingDisc> = self.discs().copied().collect();
         for (name, of) in FIELDS {
             let values = snapshot.numbers(name, discs.len())?;
@@ -378,8 +394,13 @@ impl Simulation for HardDiskSimulation {
         let events = snapshot.counts_at_most("events", discs.len(), clock.events)?;
         discs.iter_mut().zip(events).for_each(|(disc, &count)| disc.events = count);
         check_restored_discs(&self.arena, self.available_energy, &discs, &clock, &snapshot)?;
+        if self.steering.gravity.is_some() {
+            let rebuilt = self.rebuild_engine(discs.clone(), clock.time);
+            rebuilt.map_err(|failure| failure.what_and_when())?;
+        }
         self.totals = CollisionTotals::totals_from_snapshot(&snapshot, clock.events)?;
-        self.row = IntervalMark::mark_from_snapshot(&snapshot, &self.totals)?;
+        self.row = IntervalMark::mark_from_snapshot("row", &snapshot, &self.totals)?;
+        self.since = self.mark_of_changes(&snapshot)?;
         self.watch.restore(&snapshot)?;
         if let Some(followed) = &mut self.followed {
             followed.take_up(&discs, &snapshot.columns)?;
@@ -387,6 +408,10 @@ impl Simulation for HardDiskSimulation {
         self.engine.restore(discs, &snapshot)?;
         (self.clock, self.may_meet) = (clock, false);
         Ok(())
+    }
+
+    fn steer(&mut self, change: &Change) -> Result<(), SteeringError> {
+        self.make_change(change)
     }
 
     fn phases(&self) -> BTreeMap<&'static str, f64> {
@@ -409,8 +434,10 @@ impl Simulation for HardDiskSimulation {
             ("made_elastic", json!(made_elastic)),
             ("virial", json!(virial)),
         ];
+        let work = self.is_changed().then(|| (WORK_OF_CHANGES, json!(self.steering.work)));
+        let entries = entries.into_iter().chain(work);
         let figures = self.engine.figures().into_iter().map(|(name, value)| (name, json!(value)));
-        entries.into_iter().chain(figures).map(|(name, value)| (name.to_owned(), value)).collect()
+        entries.chain(figures).map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
     fn event_operations(&self) -> Vec<(&'static str, u64)> {
@@ -434,17 +461,17 @@ impl Simulation for HardDiskSimulation {
 
     fn in_words(&self) -> String {
         let (HardDiskObservation { temperature, .. }, mark) = self.observation_and_mark();
-        let IntervalMeans { compressibility, collision_rate } =
-            mark.since(&IntervalMark::default(), &self.motion());
+        let IntervalMeans { compressibility, collision_rate } = mark.since(&self.since, &self.motion());
         let temperature = match temperature.is_nan() {
             true => "none (no degree of freedom)".to_owned(),
             false => significant(temperature, 5),
         };
         format!(
-            "{}, {} collisions of pairs; temperature {temperature}; since the start: compressibility {}, {} collisions per disc and \
+            "{}, {} collisions of pairs; temperature {temperature}; since the {}: compressibility {}, {} collisions per disc and \
              unit of time",
             count_with_noun(self.identities.count(), "disc", "discs"),
             self.totals.collisions,
+            if self.is_changed() { "last change" } else { "start" },
             significant(compressibility, 5),
             significant(collision_rate, 5)
         )

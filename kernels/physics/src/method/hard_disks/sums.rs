@@ -93,6 +93,18 @@ impl CollisionTotals {
         self.action += happened.action;
     }
 
+    /// Completes the flights of discs at a time that is no event.
+    pub(super) fn end_flights<'d>(
+        &mut self,
+        arena: &Arena,
+        discs: impl Iterator<Item = &'d FlyingDisc>,
+        time: f64,
+    ) {
+        if !arena.keeps_kinetic {
+            self.action += discs.map(|disc| arena.action(disc, time)).sum::<f64>();
+        }
+    }
+
     /// Returns the sums at a time, including the flights in progress.
     pub(super) fn mark<'d>(
         &self,
@@ -153,12 +165,12 @@ impl IntervalMark {
         }
     }
 
-    /// Adds the mark to a checkpoint.
-    pub(super) fn keep(&self, kept: &mut Snapshot) {
-        kept.add_sum("row.time", self.time);
-        kept.add_count("row.collisions", self.collisions);
-        kept.add_sum("row.virial", self.virial);
-        kept.add_sum("row.action", self.action);
+    /// Adds the mark to a checkpoint, under names that begin with `name`.
+    pub(super) fn keep(&self, name: &str, kept: &mut Snapshot) {
+        kept.add_sum(&format!("{name}.time"), self.time);
+        kept.add_count(&format!("{name}.collisions"), self.collisions);
+        kept.add_sum(&format!("{name}.virial"), self.virial);
+        kept.add_sum(&format!("{name}.action"), self.action);
     }
 
     /// Reads the mark from a checkpoint.
@@ -166,14 +178,15 @@ impl IntervalMark {
     /// # Errors
     /// A message if it is missing or later than the sums.
     pub(super) fn mark_from_snapshot(
+        name: &str,
         kept: &Snapshot,
         totals: &CollisionTotals,
     ) -> Result<IntervalMark, String> {
         Ok(IntervalMark {
-            time: kept.sum("row.time")?,
-            collisions: kept.count_at_most("row.collisions", totals.collisions)?,
-            virial: kept.sum("row.virial")?,
-            action: kept.sum("row.action")?,
+            time: kept.sum(&format!("{name}.time"))?,
+            collisions: kept.count_at_most(&format!("{name}.collisions"), totals.collisions)?,
+            virial: kept.sum(&format!("{name}.virial"))?,
+            action: kept.sum(&format!("{name}.action"))?,
         })
     }
 }

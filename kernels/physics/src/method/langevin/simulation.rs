@@ -9,7 +9,8 @@ use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::RemovableDiscs;
 use crate::method::stepped::{Stepped, Stepwise};
 use crate::method::{
-    Clock, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot, StartPurpose,
+    Change, Clock, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot, StartPurpose,
+    SteeredQuantity, Steering, SteeringError, has_no,
 };
 use crate::number::significant;
 use crate::observe::{AxisMotion, temperature};
@@ -171,17 +172,33 @@ impl LangevinSimulation {
             .into_iter()
             .map(|(name, column)| retained_entries(name, column, &stays))
             .collect();
+        self.replace_stepper(start, &columns)
+    }
+
+    /// Makes another stepper of the scene, of these particles in this state.
+    fn replace_stepper(
+        &mut self,
+        start: Particles,
+        columns: &[(String, CheckpointColumn)],
+    ) -> Result<(), String> {
         self.state.check_ranks().map_err(|failure| failure.what_and_when())?;
         let elapsed = self.state.elapsed();
-        let (steps, timings, made) = (elapsed.steps, elapsed.timings, self.lists_made());
+        let (steps, begun, timings, made) =
+            (elapsed.steps, elapsed.begun, elapsed.timings, self.lists_made());
+        self.begin_stepper(start)?;
+        self.state.restore(steps, columns)?;
+        (self.state.elapsed_mut().timings, self.state.elapsed_mut().begun) = (timings, begun);
+        self.count_lists_from(made.unwrap_or_default());
+        Ok(())
+    }
+
+    /// Makes another stepper of the scene, of these particles at their start.
+    fn begin_stepper(&mut self, start: Particles) -> Result<(), String> {
         let follows = self.method.purpose == StartPurpose::Run;
         self.state.end();
         self.state = stepper(&self.method.checked, start.clone(), follows)
             .map_err(|failure| failure.what_and_when())?;
-        self.state.restore(steps, &columns)?;
-        self.state.elapsed_mut().timings = timings;
         self.method.start = start;
-        self.count_lists_from(made.unwrap_or_default());
         Ok(())
     }
 
@@ -349,6 +366,47 @@ impl Stepwise for LangevinRunState {
         }
         run.state.restore(clock.steps, &columns)?;
         run.count_lists_from(made);
+        Ok(())
+    }
+
+    fn change(run: &mut Stepped<Self>, change: &Change) -> Result<f64, SteeringError> {
+        let refused =
+            |why: &str, remedy: &str| Err(has_no("this scene of langevin", change.quantity, why, remedy));
+        match change.quantity {
+            SteeredQuantity::Gravity => {
+                return refused("nothing stops the fall across a periodic side", "change velocities instead");
+            }
+            SteeredQuantity::AngularVelocities => {
+                return refused("its particles do not rotate", "change velocities instead");
+            }
+            SteeredQuantity::BathTemperature if run.method.checked.scene.bath.friction == 0.0 => {
+                return refused("law.drag is 0, so there is no bath", "start it with law.drag above 0");
+            }
+            _ => {}
+        }
+        let particles = run.state.unwrapped();
+        let motion = change.motion_of(&particles);
+        run.state.restart(&motion)?;
+        if change.quantity == SteeredQuantity::BathTemperature {
+            run.method.checked.scene.bath.temperature = change.values[0];
+            let (start, columns) = (run.method.start.clone(), run.state.columns());
+            let bug = "this is a bug: please report it with the scene";
+            let replaced = run.replace_stepper(start, &columns);
+            replaced.map_err(|why| PhysicsFailure::new(super::LOST, why, bug).at(run.clock()))?;
+        }
+        run.compute_forces()?;
+        let squares = |velocity: &[f64; 3]| velocity[0] * velocity[0] + velocity[1] * velocity[1];
+        let change =
+            motion.iter().zip(particles.all()).map(|((new, _), old)| squares(new) - squares(&old.velocity));
+        Ok(0.5 * run.method.checked.mass * change.sum::<f64>())
+    }
+
+    fn take_up(run: &mut Stepped<Self>, steering: &Steering, begun: u64) -> Result<(), String> {
+        if let Some(temperature) = steering.bath_temperature {
+            run.method.checked.scene.bath.temperature = temperature;
+            run.begin_stepper(run.method.start.clone())?;
+        }
+        run.state.elapsed_mut().begun = begun;
         Ok(())
     }
 

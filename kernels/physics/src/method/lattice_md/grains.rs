@@ -10,7 +10,7 @@ use super::{GranularModel, GranularTotals, Lengths, Timings};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::SteppingDiscs;
 use crate::method::stepped::SteppedState;
-use crate::method::{Elapsed, PerParticle, PhysicsFailure};
+use crate::method::{Elapsed, PerParticle, PhysicsFailure, SteeringError};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
@@ -78,6 +78,38 @@ impl SteppedGrains {
         let power = self.compute_forces()?;
         self.totals.add_work(self.model.dt, power, self.wall_power());
         self.stepping.finish()
+    }
+
+    /// Restarts the integrator at the end of the step, with the velocities and angular velocities of all discs and, if given, another gravity
+    /// (length/time²).
+    ///
+    /// # Errors
+    /// [`SteeringError`] if several ranks step the discs, or the forces violate a precondition.
+    pub(super) fn restart(
+        &mut self,
+        motion: &[([f64; 3], f64)],
+        gravity: Option<[f64; 2]>,
+    ) -> Result<(), SteeringError> {
+        self.stepping.restart(motion)?;
+        if let Some(gravity) = gravity {
+            self.set_gravity(gravity);
+        }
+        // The contacts of this step are counted already.
+        let totals = self.totals;
+        let power = self.compute_forces()?;
+        self.totals = totals.with_powers(power, self.wall_power());
+        Ok(self.stepping.finish()?)
+    }
+
+    /// Replaces gravity (length/time²). Returns false where several ranks step the discs.
+    pub(super) fn set_gravity(&mut self, gravity: [f64; 2]) -> bool {
+        self.model.gravity = gravity;
+        self.stepping.set_gravity(gravity, self.model.counts_crossings())
+    }
+
+    /// Takes the step after which the integrator began from a checkpoint.
+    pub(super) fn begun_after(&mut self, steps: u64) {
+        self.stepping.elapsed_mut().begun = steps;
     }
 
     /// Computes all forces at the current positions; returns the power that contacts dissipate (energy/time).

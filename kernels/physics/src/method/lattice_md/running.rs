@@ -1,7 +1,7 @@
 //! Runs of granular discs: observations, energy balance, summary.
 
 use super::assemble::model_following_energy;
-use super::balance::{BalanceTerms, GravityPath};
+use super::balance::{BalanceTerms, GravityPath, internal_energy};
 use super::check::CheckedGranularScene;
 use super::checks;
 use super::quantities::{GranularObservation, OBSERVABLES};
@@ -13,7 +13,10 @@ use super::{
 use crate::io::checkpoint::CheckpointCounter;
 use crate::method::pairwise::Crossings;
 use crate::method::stepped::{Stepped, Stepwise};
-use crate::method::{Clock, MethodObservable, PhysicsFailure, RunWarning, Snapshot, StartPurpose};
+use crate::method::{
+    Change, Clock, MethodObservable, PhysicsFailure, RunWarning, Snapshot, StartPurpose, SteeredQuantity,
+    Steering, SteeringError, has_no,
+};
 use crate::number::significant;
 use crate::observe::{Observation, ObservationSums, SceneProperties};
 use crate::scene::Precision;
@@ -86,6 +89,12 @@ pub(super) fn begin(
     Ok(Stepped::new(grains, granular))
 }
 
+impl GranularRun {
+    fn set_gravity(&mut self, gravity: [f64; 2]) {
+        (self.model.gravity, self.scenery.gravity) = (gravity, gravity);
+    }
+}
+
 impl Stepped<GranularRun> {
     /// Observation of this moment, computed once.
     fn seen(&self) -> &GranularObservation {
@@ -93,7 +102,11 @@ impl Stepped<GranularRun> {
             let (grains, sums) = (&self.state, self.sums());
             let now = Observation::new(grains.steps(), grains.time(), &sums, &self.method.scenery);
             let totals = grains.totals();
-            GranularObservation { now, balance: self.method.work.balance(&now, &sums, &totals), totals }
+            GranularObservation {
+                now,
+                balance: self.method.work.balance(&now, &sums, &totals, self.steering.work),
+                totals,
+            }
         })
     }
 
@@ -173,6 +186,48 @@ impl Stepwise for GranularRun {
             }
         }
         kept.counters.extend(run.method.run_monitor.iter().flat_map(RunMonitor::counters));
+        if run.steering.gravity.is_some() {
+            run.method.work.keep_path(kept);
+        }
+    }
+
+    fn change(run: &mut Stepped<Self>, change: &Change) -> Result<f64, SteeringError> {
+        let refused =
+            |why: &str, remedy: &str| Err(has_no("this scene of lattice-md", change.quantity, why, remedy));
+        match change.quantity {
+            SteeredQuantity::BathTemperature => {
+                return refused("its discs are in no bath", "change velocities instead");
+            }
+            SteeredQuantity::AngularVelocities if !run.method.model.friction => {
+                return refused("without friction discs do not rotate", "start it with law.friction above 0");
+            }
+            _ => {}
+        }
+        let GranularObservation { now, balance, .. } = run.seen();
+        let (before, gravity_work) = (internal_energy(now), balance.gravity_work);
+        let motion = change.motion_of(&run.state.particles());
+        run.state.restart(&motion, change.gravity())?;
+        run.method.seen.take();
+        if let Some(gravity) = change.gravity() {
+            run.method.set_gravity(gravity);
+            let grains = &run.state;
+            let path = GravityPath::begin(&run.method.scenery, grains.crossings(), || grains.unwrapped());
+            run.method.work.change_gravity(path, gravity_work);
+        }
+        let (sums, grains) = (run.sums(), &run.state);
+        let after = Observation::new(grains.steps(), grains.time(), &sums, &run.method.scenery);
+        Ok(internal_energy(&after) - before)
+    }
+
+    fn take_up(run: &mut Stepped<Self>, steering: &Steering, begun: u64) -> Result<(), String> {
+        if let Some(gravity) = steering.gravity {
+            if !run.state.set_gravity(gravity) {
+                return Err("gravity was changed during the run: resume it on one rank".to_owned());
+            }
+            run.method.set_gravity(gravity);
+        }
+        run.state.begun_after(begun);
+        Ok(())
     }
 
     fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
@@ -187,6 +242,10 @@ impl Stepwise for GranularRun {
             run_monitor.restore(&snapshot.counters)?;
         }
         run.method.seen.take();
+        if run.steering.gravity.is_some() {
+            let grains = run.method.discs[0];
+            run.method.work.restore_path(&run.method.scenery, grains, &snapshot)?;
+        }
         let mut columns = snapshot.columns;
         if run.method.counts_for_motion_alone {
             Crossings::begin_in(&mut columns, discs);

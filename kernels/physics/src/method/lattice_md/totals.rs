@@ -92,6 +92,11 @@ impl GranularTotals {
         GranularTotals { power, wall_power, ..GranularTotals::default() }
     }
 
+    /// These totals where contacts and walls have other powers now (energy/time).
+    pub(super) fn with_powers(self, power: f64, wall_power: f64) -> GranularTotals {
+        GranularTotals { power, wall_power, ..self }
+    }
+
     /// Adds the work of a step of `dt` (time) by the trapezoidal rule; the powers are those at its end (energy/time).
     pub(super) fn add_work(&mut self, dt: f64, power: f64, wall_power: f64) {
         self.dissipated += 0.5 * dt * (self.power + power);

@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-6;
 /// State of the monitor.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EnergyMonitor {
-    /// Energy at the start.
+    /// Energy at the start, and the work of changes since then.
     pub(super) start: f64,
     /// Kinetic energy at the start, and its sum with the magnitude of the potential energy.
     kinetic: f64,
@@ -37,6 +37,12 @@ impl EnergyMonitor {
         let energy = start.energy();
         let (kinetic, size) = (start.kinetic, start.kinetic + start.potential.abs());
         EnergyMonitor { start: energy, kinetic, size, worst: (energy, 0), nearest: None }
+    }
+
+    /// Adds work that is no error (energy).
+    pub(super) fn add_work(&mut self, work: f64) {
+        self.start += work;
+        self.worst.0 += work;
     }
 
     /// Records a state after some steps.

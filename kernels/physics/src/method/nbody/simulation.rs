@@ -7,14 +7,14 @@ use super::encounter::{NearestPair, NearestPairSearch};
 use super::field::GravityField;
 use super::monitor::EnergyMonitor;
 use super::quantities::{NbodyObservation, OBSERVABLES};
-use super::schemes::{AdaptiveSteps, BodyIntegrator, IntegrationError};
+use super::schemes::{AdaptiveSteps, BodyIntegrator, IntegrationError, SchemeName};
 use super::sums::{StopCallback, never_stop};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::Elapsed;
 use crate::method::stepped::{Stepped, SteppedState, Stepwise};
 use crate::method::{
-    Clock, Culprit, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot, StartPurpose,
-    rank_loss_failure,
+    Change, Clock, Culprit, MethodObservable, PerParticle, PhysicsFailure, RunWarning, Snapshot,
+    StartPurpose, SteeredQuantity, Steering, SteeringError, has_no, rank_loss_failure,
 };
 use crate::number::significant;
 use crate::particles::Particles;
@@ -53,6 +53,8 @@ pub(super) struct NbodyRunState {
     /// Nearest pair at the last check.
     pub(super) last_encounter: Option<NearestPair>,
     pub(super) before: SavedStep,
+    /// Name, damping and tolerance of the integrator.
+    integrator: (SchemeName, [f64; 2]),
     /// Cached conserved quantities of the current state.
     seen: RefCell<Option<Result<ConservedQuantities, ProgramError>>>,
 }
@@ -109,6 +111,7 @@ pub(super) fn begin(
         encounters,
         last_encounter: nearest,
         before: SavedStep::default(),
+        integrator: (scene.scheme, [scene.damping, scene.tolerance]),
         seen: RefCell::new(Some(Ok(start))),
     };
     Ok(Stepped::new(moved, watched))
@@ -322,8 +325,9 @@ impl Stepwise for NbodyRunState {
         for (name, column) in COLUMNS.into_iter().zip(state) {
             column[..count].copy_from_slice(find(name)?);
         }
-        // Before the first step no derivatives are carried.
-        let orders = if clock.steps == 0 { 0 } else { run.state.scheme.carries() };
+        // Before its first step the integrator carries no derivatives.
+        let begun = run.state.elapsed.begun;
+        let orders = if clock.steps == begun { 0 } else { run.state.scheme.carries() };
         let mut carried = vec![];
         for order in 0..orders {
             let [x, y, z] =
@@ -334,10 +338,35 @@ impl Stepwise for NbodyRunState {
         let names = run.state.scheme.carried_numbers().into_iter();
         let numbers: Vec<f64> = names.map(|(name, _)| snapshot.sum(name)).collect::<Result<_, _>>()?;
         run.state.scheme.take_up_numbers(&numbers);
-        run.state.scheme.check_numbers(clock.steps, run.state.elapsed.dt)?;
+        run.state.scheme.check_numbers(clock.steps - begun, run.state.elapsed.dt)?;
         run.state.elapsed.steps = clock.steps;
         run.state.field.get_mut().evaluations = evaluations;
         *run.method.seen.get_mut() = None;
+        Ok(())
+    }
+
+    fn change(run: &mut Stepped<Self>, change: &Change) -> Result<f64, SteeringError> {
+        if change.quantity != SteeredQuantity::Velocities {
+            let why = "bodies are points in open space, with no gravity but their own";
+            return Err(has_no("nbody", change.quantity, why, "change velocities instead"));
+        }
+        let bodies = &mut run.state.bodies;
+        let square = |velocity: [f64; 3]| velocity.iter().map(|along| along * along).sum::<f64>();
+        let mut work = 0.0;
+        for (body, (velocity, _)) in change.motion_of(&run.state.particles).into_iter().enumerate() {
+            work += 0.5 * bodies.mass[body] * (square(velocity) - square(bodies.velocity_of(body)));
+            bodies.velocity.iter_mut().zip(velocity).for_each(|(column, along)| column[body] = along);
+        }
+        let (name, [damping, tolerance]) = run.method.integrator;
+        run.state.scheme = name.scheme(damping, tolerance);
+        run.state.elapsed.begun = run.state.elapsed.steps;
+        run.method.watch.add_work(work);
+        *run.method.seen.get_mut() = None;
+        Ok(work)
+    }
+
+    fn take_up(run: &mut Stepped<Self>, _: &Steering, begun: u64) -> Result<(), String> {
+        run.state.elapsed.begun = begun;
         Ok(())
     }
 

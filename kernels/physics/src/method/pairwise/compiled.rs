@@ -76,6 +76,8 @@ pub(super) struct PassArguments<'a, S, P, Q> {
     pub(super) sums: &'a mut ForceRecords<P>,
     pub(super) search: &'a mut Q,
     pub(super) steps: u64,
+    /// True in the first step: the state is not predicted.
+    pub(super) is_beginning: bool,
     pub(super) set: InstructionSet,
 }
 
@@ -83,7 +85,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SchemeTask for PassArgumen
     type Output = Result<PassReport, ProgramError>;
 
     fn with<C: Scheme>(self, scheme: C) -> Self::Output {
-        let PassArguments { discs, system, state, sums, search, steps, set } = self;
+        let PassArguments { discs, system, state, sums, search, steps, is_beginning, set } = self;
         let (records, higher, inverse_inertia, ids) = state.for_advance();
         let (limit, copies) = search.displacement_limit();
         let advance = Advance {
@@ -99,7 +101,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SchemeTask for PassArgumen
             discs,
             step: steps,
             ids,
-            corrected: steps == 0,
+            corrected: is_beginning,
             longest_step: system.longest_step,
         };
         advance.run(limit, copies, set)

@@ -23,6 +23,14 @@ impl Crossings {
         Crossings { followed, counts }
     }
 
+    /// Counts these axes from now on, too.
+    pub(crate) fn follow(&mut self, followed: [bool; 2], discs: usize) {
+        self.followed = [0, 1].map(|axis| self.followed[axis] || followed[axis]);
+        if self.is_followed() {
+            self.counts.resize(discs, [0.0; 2]);
+        }
+    }
+
     /// True if any axis is counted.
     pub(crate) fn is_followed(&self) -> bool {
         self.followed.contains(&true)

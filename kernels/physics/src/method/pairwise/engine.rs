@@ -193,8 +193,17 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     pub(super) fn pass(&mut self, discs: Range<usize>) -> Result<PassReport, ProgramError> {
         let begun = Instant::now();
         let PairEngine { dynamics, system, state, sums, search, set, elapsed, .. } = self;
-        let steps = elapsed.steps;
-        let passed = dynamics.pass(PassArguments { discs, system, state, sums, search, steps, set: *set });
+        let (steps, is_beginning) = (elapsed.steps, elapsed.is_beginning());
+        let passed = dynamics.pass(PassArguments {
+            discs,
+            system,
+            state,
+            sums,
+            search,
+            steps,
+            is_beginning,
+            set: *set,
+        });
         elapsed.timings.add(Phase::CorrectPredict, begun.elapsed().as_secs_f64());
         passed
     }
@@ -238,7 +247,7 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     pub(super) fn correct(&self, discs: &[u32], to: &mut [StepEndRow]) {
         let PairEngine { system, state, sums, .. } = self;
         let steps = self.elapsed.steps;
-        let moving = if steps == 0 || self.awaits_forces { 0 } else { state.moving() };
+        let moving = if self.elapsed.is_beginning() || self.awaits_forces { 0 } else { state.moving() };
         self.dynamics.correct(CorrectionArguments { system, state, sums, steps, moving, discs, to });
     }
 }

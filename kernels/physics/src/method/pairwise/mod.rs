@@ -23,6 +23,7 @@ mod forces;
 mod observing;
 mod ranked;
 mod removal;
+mod restart;
 mod saved;
 pub(crate) mod search;
 mod state;

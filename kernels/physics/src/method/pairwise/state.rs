@@ -177,6 +177,11 @@ impl<S: Precision> MovingDiscs<S> {
         }
     }
 
+    /// Factor from velocities to rates in the records.
+    pub(super) fn velocity_scale(&self) -> f64 {
+        self.velocity_scale
+    }
+
     /// Number of discs.
     pub(crate) fn len(&self) -> usize {
         self.numbers.len()

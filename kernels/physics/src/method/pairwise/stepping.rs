@@ -3,7 +3,7 @@
 use super::search::{PairSearch, SearchCells};
 use super::{Elapsed, NameableDiscs, PairEngine, Phase, wrapped};
 use crate::io::checkpoint::CheckpointColumn;
-use crate::method::{PerParticle, PhysicsFailure, SteppedState};
+use crate::method::{PerParticle, PhysicsFailure, SteeringError, SteppedState};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::{GrainStates, Particle, Particles};
 use stripmine_kernels::backend::Precision;
@@ -80,6 +80,21 @@ pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
     /// # Errors
     /// Says why, if they are not those of this engine and scene.
     fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String>;
+
+    /// Takes the end of the step as a start, with the velocities and angular velocities of all discs in the scene's order. Forces must be computed
+    /// next, and the step be [finished](Self::finish).
+    ///
+    /// # Errors
+    /// [`SteeringError`] if a disc belongs to no cell, or several ranks step the discs.
+    fn restart(&mut self, _motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
+        let remedy = "use one rank";
+        Err(SteeringError::refused("a simulation on several ranks cannot be changed", remedy))
+    }
+
+    /// Replaces gravity (length/time²), and counts crossings along these axes from now on, too. Returns false where several ranks step the discs.
+    fn set_gravity(&mut self, _gravity: [f64; 2], _followed: [bool; 2]) -> bool {
+        false
+    }
 
     /// Sums over the grains and their contacts at the end of the step. `work` returns the work of gravity on a grain (by its number in the scene) at
     /// a position (length) that is consistent with the counted periods; it is called only with gravity.
@@ -192,6 +207,15 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
 
     fn restore(&mut self, steps: u64, columns: &[(String, CheckpointColumn)]) -> Result<(), String> {
         self.restore_state(steps, columns)
+    }
+
+    fn restart(&mut self, motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
+        Ok(single_threaded_if(self.is_small(), || self.begin_from_step_end(motion))?)
+    }
+
+    fn set_gravity(&mut self, gravity: [f64; 2], followed: [bool; 2]) -> bool {
+        self.replace_gravity(gravity, followed);
+        true
     }
 
     fn sums(&self, scenery: &SceneProperties, work: &GravityWork<'_>) -> ObservationSums {

@@ -16,7 +16,7 @@ use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::{
     Crossings, Elapsed, NameableDiscs, Phase, PrescribedMotion, SteppingDiscs, Timings, unwrapped, wrapped,
 };
-use crate::method::{PerParticle, PhysicsFailure};
+use crate::method::{PerParticle, PhysicsFailure, SteeringError};
 use crate::particles::{Particle, Particles};
 use crate::scene::WallMotion;
 use stripmine_kernels::backend;
@@ -237,7 +237,7 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
     }
 
     fn finish(&mut self) -> Result<(), PhysicsFailure> {
-        if self.elapsed.steps == 0 {
+        if self.elapsed.is_beginning() {
             self.start_derivatives();
             self.elapsed.timings = Timings::default();
             return Ok(());
@@ -305,6 +305,28 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
         self.elapsed.steps = steps;
         self.move_walls(self.elapsed.time());
         Ok(())
+    }
+
+    fn restart(&mut self, motion: &[([f64; 3], f64)]) -> Result<(), SteeringError> {
+        let scale = scales(&self.model)[1];
+        for (freedom, arrays) in STATE.iter().enumerate() {
+            for (derivative, &array) in arrays.iter().enumerate().skip(1) {
+                let Some(column) = self.arrays.state_mut(array) else { continue };
+                for (to, ([u, v, _], omega)) in column.iter_mut().zip(&motion[..self.start.grain_count()]) {
+                    let rate = if derivative == 1 { [u, v, omega][freedom] * scale } else { 0.0 };
+                    *to = S::from_f64(rate);
+                }
+            }
+        }
+        self.elapsed.begun = self.elapsed.steps;
+        Ok(())
+    }
+
+    fn set_gravity(&mut self, gravity: [f64; 2], followed: [bool; 2]) -> bool {
+        self.model.gravity = gravity;
+        self.programs = programs_of::<S, P>(&self.model);
+        self.elapsed.crossings.follow(followed, self.start.len());
+        true
     }
 
     fn ledger(&self) -> Ledger {
