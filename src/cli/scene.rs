@@ -13,11 +13,11 @@ use serde::Serialize;
 use serde_json::{Map, json};
 use stripmine_kernels::backend::ListingLine;
 use stripmine_kernels::emit::GroupSize;
-use stripmine_physics::method::{Fact, Methods, Prepared, VectorProgram, load, method};
+use stripmine_physics::method::{Fact, MethodEntry, Methods, Prepared, VectorProgram, load, method};
 use stripmine_physics::quoted;
 use stripmine_physics::reported::{ErrorClass, Reported};
 use stripmine_physics::run::forecast;
-use stripmine_physics::scene::{Fallback, Key, Preset, SECTIONS};
+use stripmine_physics::scene::{Fallback, Key, KeyValueKind, Preset, SECTIONS};
 
 /// Lists presets and keys, checks a scene
 #[derive(Args)]
@@ -253,7 +253,7 @@ fn matching_keys(word: &str, common: &Common, methods: Methods) -> Result<(), Co
     let wanted = word.to_lowercase();
     let mut found: Vec<MatchingKey> = vec![];
     for entry in methods {
-        for line in entry.vocabulary.keys.keys().map(KeyLine::of) {
+        for line in key_lines(entry) {
             let text = format!("{}.{} {}", line.section, line.key, line.meaning).to_lowercase();
             if !text.contains(&wanted) {
                 continue;
@@ -330,21 +330,36 @@ impl KeyLine {
     }
 }
 
+/// Keys of a method, those of the tables of a list after all others.
+fn key_lines(entry: &MethodEntry) -> Vec<KeyLine> {
+    let keys = || entry.vocabulary.keys.keys();
+    let fields = keys().flat_map(|key| match key.kind {
+        KeyValueKind::Tables(fields) => fields.iter().copied(),
+        _ => [].iter().copied(),
+    });
+    keys().chain(fields).map(KeyLine::of).collect()
+}
+
 fn keys(name: Option<&str>, common: &Common, methods: Methods) -> Result<(), CommandFailure> {
     let entry = match name {
         Some(name) => method(methods, name),
         None => methods.first().copied(),
     };
     let Some(entry) = entry else { return matching_keys(name.unwrap_or_default(), common, methods) };
-    let lines: Vec<KeyLine> = entry.vocabulary.keys.keys().map(KeyLine::of).collect();
+    let lines = key_lines(entry);
     if common.json {
         return print_json(&lines);
     }
     let sections = std::iter::once(("", "at the top of the file")).chain(SECTIONS);
-    let sections = sections.filter(|(section, _)| entry.vocabulary.keys.section(section).next().is_some());
-    let tables: Vec<String> = sections
-        .map(|(section, holds)| {
-            let title = if section.is_empty() { holds.to_owned() } else { format!("[{section}]: {holds}") };
+    let titles = sections.map(|(section, holds)| match section {
+        "" => (section, holds.to_owned()),
+        _ => (section, format!("[{section}]: {holds}")),
+    });
+    let lists = entry.vocabulary.keys.keys().filter(|key| matches!(key.kind, KeyValueKind::Tables(_)));
+    let titles = titles.chain(lists.map(|key| (key.name, format!("[[{}]]: each", key.name))));
+    let tables: Vec<String> = titles
+        .filter(|(section, _)| lines.iter().any(|line| line.section == *section))
+        .map(|(section, title)| {
             let with = |line: &KeyLine| match line.used_with.as_slice() {
                 [] => String::new(),
                 choices => format!(" Used with {}.", choices.join(", ")),

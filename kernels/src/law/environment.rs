@@ -14,6 +14,17 @@ pub struct ObservationRequest {
     pub energy: bool,
 }
 
+/// Coefficient of a contact that a wall may have of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WallCoefficient {
+    /// Normal damping.
+    NormalDamping,
+    /// Tangential damping.
+    ShearDamping,
+    /// Friction coefficient.
+    Friction,
+}
+
 /// Environment of a law: everything it may read and write.
 ///
 /// *Own* is the particle the law is evaluated for, *partner* the other one. A law never subtracts positions itself: the
@@ -36,6 +47,11 @@ pub trait Env<const DIM: usize>: Copy {
     fn partner(self, field: ParticleField, partner: Self::Partner) -> Self::V;
     /// Broadcasts a number to all pairs.
     fn uniform(self, value: f64) -> Self::V;
+    /// A coefficient of the contact: that of the law, unless the partner is a wall with another.
+    #[inline(always)]
+    fn coefficient(self, _which: WallCoefficient, of_law: f64) -> Self::V {
+        self.uniform(of_law)
+    }
     /// True if the predicate is false for all pairs and this execution takes early exits.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
     /// Adds to a sum of the own particle.

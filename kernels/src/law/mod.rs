@@ -10,6 +10,6 @@ pub mod spring;
 mod stated;
 pub mod yukawa;
 
-pub use environment::{Env, Law, ObservationRequest};
+pub use environment::{Env, Law, ObservationRequest, WallCoefficient};
 pub use quantity::{Axis, ParticleField, ParticleSum};
 pub use stated::{StatedEnv, check};

@@ -4,7 +4,7 @@
 //! sweep only through [`StatedEnv`], which panics at anything else. Both lists are constants and so is every field a law names: the
 //! compiled check is empty.
 
-use super::environment::{Env, Law};
+use super::environment::{Env, Law, WallCoefficient};
 use super::quantity::{ParticleField, ParticleSum};
 use crate::isa::{ProgramError, Vector};
 use std::cell::Cell;
@@ -150,6 +150,10 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
     #[inline(always)]
     fn uniform(self, value: f64) -> E::V {
         self.env.uniform(value)
+    }
+    #[inline(always)]
+    fn coefficient(self, which: WallCoefficient, of_law: f64) -> E::V {
+        self.env.coefficient(which, of_law)
     }
     #[inline(always)]
     fn none(self, predicate: <E::V as Vector>::Predicate) -> bool {

@@ -5,3 +5,4 @@ pub mod fast;
 pub mod lattice;
 pub mod neighbor_list;
 pub mod pair;
+pub mod walls;

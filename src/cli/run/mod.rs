@@ -138,7 +138,8 @@ impl RunVerb {
             }
         };
         let scene = prepared.scene.clone();
-        let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &built() };
+        let quantities = prepared.quantities(entry);
+        let job = RunJob { prepared: prepared.into(), quantities, program: &built() };
         let work = || run(job, folder, existing, signals::interruption_flag(), progress, notice);
         let ending = ranks::with_backend(crew, work);
         clear_progress();

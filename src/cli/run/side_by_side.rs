@@ -119,7 +119,8 @@ impl SideBySide<'_> {
         notice: impl FnMut(&str) + Send,
     ) -> Result<Summary, FailedRun> {
         let (prepared, entry) = (self.prepare)(overrides)?;
-        let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &built() };
+        let quantities = prepared.quantities(entry);
+        let job = RunJob { prepared: prepared.into(), quantities, program: &built() };
         match run(job, folder, self.existing, signals::interruption_flag(), progress, notice) {
             Ok(Ending::Done(summary)) => {
                 for warning in &summary.warnings {

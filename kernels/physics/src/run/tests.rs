@@ -26,7 +26,8 @@ fn files_after(
         dirty: false,
         target: "here".to_owned(),
     };
-    let job = RunJob { prepared: prepared.into(), quantities: entry.quantities, program: &program };
+    let quantities = prepared.quantities(entry);
+    let job = RunJob { prepared: prepared.into(), quantities, program: &program };
     let is_stopped = AtomicBool::new(false);
     let progress = |done, _| is_stopped.store(stop == Some(done), Ordering::Relaxed);
     run(job, folder, existing, &is_stopped, progress, |_| {}).unwrap();

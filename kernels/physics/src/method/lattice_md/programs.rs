@@ -10,7 +10,7 @@ use stripmine_kernels::integrator::DERIVATIVES;
 use stripmine_kernels::integrator::gear::{Gear, GearCorrector, GearPredictor};
 use stripmine_kernels::integrator::velocity_verlet::{VelocityVerlet, VerletDrift, VerletKick};
 use stripmine_kernels::isa::{Memory, Op, OpClass, ProgramError};
-use stripmine_kernels::law::granular::{EqualDiscs, Granular};
+use stripmine_kernels::law::granular::{Contact, EqualDiscs, Granular};
 use stripmine_kernels::law::{Law, ParticleField};
 use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_kernels::mask::Mask;
@@ -18,6 +18,7 @@ use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::cells::{CheckIndex, ClearIndex, EnterDiscs, IndexImages};
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::SpreadToLattice;
+use stripmine_kernels::sweep::walls::WallForces;
 use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
 
 macro_rules! define_parts {
@@ -52,6 +53,7 @@ define_parts! {
     (Halo, "halo", "images in the halo, the check that no disc was lost: printed programs only, as the paper has no equation for it"),
     (Lattice, "lattice", "the discs' quantities as lattice vectors"),
     (Forces, "forces", "the contact law at every offset of the mask"),
+    (Walls, "walls", "the contact law at the plane walls: scenes with such walls only"),
     (Corrector, "corrector", "forces gathered back, and Gear's correction of all derivatives"),
 }
 
@@ -170,8 +172,15 @@ fn our_programs<S: Precision, P: Precision>(model: &GranularModel) -> Vec<StepPr
     programs.extend([
         step(Part::Lattice, VectorLength::PaddedCells, Box::new(Program::new(spread))),
         step(Part::Forces, VectorLength::SweptCells, forces),
-        step(Part::Corrector, VectorLength::Grains, corrector::<S, P>(model)),
     ]);
+    if !model.walls.is_empty() {
+        programs.push(step(
+            Part::Walls,
+            VectorLength::WallElements,
+            with_wall_law(model.wall_law(), WallSweep::<P>(model, PhantomData)),
+        ));
+    }
+    programs.push(step(Part::Corrector, VectorLength::Grains, corrector::<S, P>(model)));
     programs
 }
 
@@ -249,6 +258,15 @@ pub(super) fn with_law<W: LawTask>(model: &GranularModel, task: W) -> W::Output 
     }
 }
 
+/// Applies a task to the law between discs and plane walls, which reads radius and mass of each disc.
+pub(super) fn with_wall_law<W: LawTask>((contact, friction): (Contact, bool), task: W) -> W::Output {
+    let any = EqualDiscs { radius: f64::NAN, inverse_mass: f64::NAN };
+    match friction {
+        true => task.with(Granular::<true, false> { contact, disc: any }),
+        false => task.with(Granular::<false, false> { contact, disc: any }),
+    }
+}
+
 /// Applies a task to the integrator.
 pub(super) fn with_scheme<W: SchemeTask>(model: &GranularModel, work: W) -> W::Output {
     let acceleration = model.acceleration();
@@ -278,6 +296,21 @@ impl<P: Precision> LawTask for LatticeSweep<'_, P> {
         let GranularModel { mask, shape, frame, coordinates, .. } = self.0;
         let forces = Forces::<P, L>::new(law, mask, *shape, *frame, *coordinates).asked(self.0.asked());
         (Box::new(Program::new(forces)), L::FIELDS)
+    }
+}
+
+/// Program of the plane walls for a law.
+struct WallSweep<'m, P>(&'m GranularModel, PhantomData<P>);
+
+impl<P: Precision> LawTask for WallSweep<'_, P> {
+    type Output = Box<dyn Runnable>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        let equal = match self.0.discs {
+            DiscUniformity::Equal { disc, .. } => Some(disc),
+            DiscUniformity::Varying => None,
+        };
+        Box::new(Program::new(WallForces::<P, L>::new(law, equal)))
     }
 }
 
@@ -345,7 +378,9 @@ pub fn execute(
     set: InstructionSet,
 ) -> Result<(), ProgramError> {
     for step in programs.iter().filter(|step| parts.contains(&step.part)) {
-        step.program.run(memory, lengths.range(step.length), execution, set)?;
+        for range in lengths.ranges(step.length) {
+            step.program.run(memory, range, execution, set)?;
+        }
     }
     Ok(())
 }
