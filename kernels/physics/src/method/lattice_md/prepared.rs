@@ -137,10 +137,13 @@ impl Startable for CheckedGranularScene {
         let (memory, lengths) = arrays.memory();
         let calls: Vec<ProgramCall<'_>> = programs
             .iter()
-            .map(|step| ProgramCall {
-                part: step.part.name(),
-                program: step.program.as_ref(),
-                range: lengths.range(step.length),
+            .flat_map(|step| {
+                let call = move |range| ProgramCall {
+                    part: step.part.name(),
+                    program: step.program.as_ref(),
+                    range,
+                };
+                lengths.ranges(step.length).into_iter().map(call)
             })
             .collect();
         task(&calls, &memory);

@@ -324,7 +324,7 @@ pub(super) fn warnings(
     };
     if has_no_walls && particles.grains().iter().any(leaves) {
         let why = "sides that are not periodic do not confine discs, and there are no wall discs: a grain that leaves the box ends the run";
-        let what = "make them periodic, line them with wall discs (particles.wall_positions), or use method.kind = \"hard-disks\"";
+        let what = "set domain.closed_sides = \"wall\", make them periodic, or line them with wall discs (particles.wall_positions)";
         warn("open sides", f64::INFINITY, &PERIODIC, why.to_owned(), what.to_owned());
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)
