@@ -25,7 +25,7 @@ fn prepare(folder: &Path) {
 /// Arguments, exit code, kind of the failure as data, and words of the message.
 const CASES: &[(&[&str], i32, &str, &[&str])] = &[
     (&["nonsense"], 2, "usage", &["nonsense"]),
-    (&["table", "extra"], 2, "usage", &["extra"]),
+    (&["table", "extra"], 2, "usage", &["--host"]),
     (&["table", "--threads", "0"], 2, "usage", &["--threads", "0"]),
     (&["table", "--particles", "0"], 2, "usage", &["at least one"]),
     (&["table", "--particles", "-3"], 2, "usage", &["-3"]),

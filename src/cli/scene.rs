@@ -179,6 +179,11 @@ struct ProgramListing {
     text: String,
 }
 
+/// Columns of operations, in a table of their own.
+const COUNTED: [&str; 4] = ["n is", "operations (NOP)", "of them computing", "divisions and roots"];
+/// Columns of flops and bytes, in a table of their own.
+const MOVED: [&str; 3] = ["flops", "bytes", "flop a byte"];
+
 /// Output of the programs of a scene.
 enum ProgramOutput {
     /// Operations and clock periods, as tables.
@@ -213,7 +218,12 @@ fn programs(
             return print(&String::from_utf8_lossy(&bytes));
         }
         let [operations, clocks] = frames.each_ref().map(FormattedTable::from);
-        let tables = [operations.notes(note), clocks];
+        // Side by side, all columns would be wider than a page.
+        let title = format!(
+            "{name}: floating-point operations and bytes of a section, for one element of its vectors"
+        );
+        let moved = FormattedTable { title, ..operations.clone().without(&COUNTED) };
+        let tables = [operations.without(&MOVED).notes(note), moved, clocks];
         return print(&tables.each_ref().map(terminal::render).join("\n"));
     };
     let of = |it: &VectorProgram| {

@@ -176,6 +176,18 @@ pub(crate) struct FormattedTable {
 }
 
 impl FormattedTable {
+    /// The table without some columns.
+    pub(crate) fn without(mut self, headings: &[&str]) -> FormattedTable {
+        let stays: Vec<bool> = self.columns.iter().map(|it| !headings.contains(&it.as_str())).collect();
+        let mut kept = stays.iter().cycle();
+        self.columns.retain(|_| kept.next() == Some(&true));
+        for row in &mut self.rows {
+            let mut kept = stays.iter().cycle();
+            row.retain(|_| kept.next() == Some(&true));
+        }
+        self
+    }
+
     pub(crate) fn note(self, note: impl Into<String>) -> FormattedTable {
         self.notes([note])
     }

@@ -117,7 +117,7 @@ pub struct MachineModel {
 pub(crate) enum MachineFeature {
     /// Instructions that take a product and a sum.
     Fma,
-    /// Two or more elements of 32 bits in the place of one of 64.
+    /// Elements of 32 bits that take the place of one of 64.
     Lanes32,
 }
 
@@ -250,7 +250,7 @@ impl MachineModel {
         self.lanes_32.as_ref().filter(|_| element == "f32").map_or(1.0, |lanes| lanes.value)
     }
 
-    /// Copy of the machine with or without a feature, to see what it gains: two elements of 32 bits in the place of one of 64.
+    /// Copy of the machine with or without a feature, to see what it gains: two elements of 32 bits take the place of one of 64.
     #[must_use]
     pub(crate) fn with_feature(&self, feature: MachineFeature, is_present: bool) -> MachineModel {
         let mut machine = self.clone();

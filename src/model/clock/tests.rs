@@ -187,7 +187,8 @@ fn register_strips_add_the_loop_overhead() {
 #[test]
 fn chaining_never_costs_and_ports_never_save() {
     for name in names() {
-        let machine = preset(name).unwrap();
+        // A fused product needs fewer instructions, by which registers may win over the paper's clock.
+        let machine = preset(name).unwrap().with_feature(MachineFeature::Fma, false);
         for n in [1, 8, 64, 65, 1000, 100_000] {
             let clocks = |clock: Clock| clock.clocks(&machine, &daxpy(), n);
             assert!(clocks(Clock::Chained) <= clocks(Clock::Registers) + 1e-9, "{name}, n = {n}");

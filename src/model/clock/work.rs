@@ -63,7 +63,7 @@ impl ProgramWork {
     }
 }
 
-/// The only reader of a product, if it is a sum or difference, with the factors in the place of the product.
+/// The only reader of a product, if it is a sum or difference, with the factors instead of the product.
 fn fused_sum(order: &[Outline], product: usize) -> Option<(usize, Outline)> {
     let Outline { op: Op::Multiply, converts: false, reads: factors, writes: Some(result) } = &order[product]
     else {

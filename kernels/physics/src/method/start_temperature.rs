@@ -4,7 +4,7 @@ use super::{Fact, Prepared};
 use crate::number::significant;
 use crate::observe::{AxisMotion, conserved_axes, temperature};
 use crate::particles::{Particle, Particles};
-use crate::scene::{KeySet, SceneValues, TEMPERATURE};
+use crate::scene::{Key, KeySet, KeyValueKind, SceneValues, TEMPERATURE};
 use serde_json::json;
 
 /// Relative difference worth reporting.
@@ -15,7 +15,9 @@ pub(crate) const START_TEMPERATURE: &str = "start_temperature";
 
 /// Temperature requested for a generated start; none where a bath or a wall sets the temperature.
 pub(super) fn requested_temperature(values: &SceneValues, keys: &KeySet) -> Option<f64> {
-    let is_kept = keys.keys().any(|key| key.name.ends_with("_temperature") && values.is_used(key));
+    let keeps =
+        |key: &&Key| key.name.ends_with("_temperature") && matches!(key.kind, KeyValueKind::Number(_));
+    let is_kept = keys.keys().filter(keeps).any(|key| values.is_used(key));
     let is_asked = !is_kept && values.is_given(&TEMPERATURE) && values.is_used(&TEMPERATURE);
     values.number(&TEMPERATURE).filter(|asked| is_asked && *asked > 0.0)
 }

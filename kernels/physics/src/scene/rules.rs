@@ -21,6 +21,9 @@ pub static DISC_RIVALS: &[ExclusiveKeys] = &[
     ExclusiveKeys { keys: &[&TEMPERATURE, &SPEED], used: ALWAYS, needed: false, with: None },
 ];
 
+/// Keys of a generator that also supply what a start file lacks.
+const OF_START: [&str; 7] = ["radius", "mass", "temperature", "speed", "virial", "exact_temperature", "seed"];
+
 /// Applies all rules to the values, sets aside values that overrides make obsolete, and records every mistake.
 pub(super) fn apply_rules(values: &mut SceneValues) {
     rivals(values);
@@ -77,6 +80,10 @@ fn unused(values: &mut SceneValues) {
     for key in values.vocabulary.keys.keys() {
         let Some((by, choices)) = key.used else { continue };
         let (Some(choice), Some(entry)) = (values.choice(by), values.entry(key)) else { continue };
+        if !entry.overrides && choice == "file" && is_replaced_by_file(values, key) {
+            values.set_aside(key);
+            continue;
+        }
         if choices.contains(&choice.as_str()) {
             continue;
         }
@@ -95,6 +102,12 @@ fn unused(values: &mut SceneValues) {
             .advising(format!("leave it out; it is used with {}", choices.join(", ")));
         values.errors.push(error);
     }
+}
+
+/// True if a start file given as an override replaces a generator of the text, and this key of it: the file has such values of its own.
+fn is_replaced_by_file(values: &SceneValues, key: &Key) -> bool {
+    let (section, name) = key.id();
+    section == GENERATE.section && OF_START.contains(&name) && values.set_aside.contains_key(&GENERATE.id())
 }
 
 fn missing(values: &mut SceneValues) {

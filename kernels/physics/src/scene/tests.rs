@@ -42,6 +42,7 @@ fn dimensional_keys_have_units() {
         "structure_share",
         "screening",
         "discs_in_cell",
+        "tolerance",
     ];
     for key in METHODS.iter().flat_map(|method| method.vocabulary.keys.keys()) {
         let measures = matches!(key.kind, Number(_) | Pair(_) | Pairs | Numbers(_));

@@ -40,7 +40,7 @@ pub(crate) fn ladder(question: &TableScene, machine: &MachineModel) -> Result<Fi
 /// Programs of a step, and the machine whose clock periods are counted.
 struct Ladder<'m> {
     works: Vec<(Part, ProgramWork, u64)>,
-    /// The same in single precision; none for the printed program, which has one precision.
+    /// Programs in single precision; none for the printed program, which has one precision.
     single: Vec<(Part, ProgramWork, u64)>,
     discs: usize,
     cells: usize,
