@@ -3,7 +3,8 @@
 //! law and integrator.
 
 use super::GranularModel;
-use super::programs::{with_law, with_scheme, with_wall_law};
+use super::programs::{with_law, with_scheme};
+use super::wall_law::with_wall_law;
 use super::walls::walls_at;
 use crate::grid::sectors_of;
 use crate::method::PhysicsFailure;

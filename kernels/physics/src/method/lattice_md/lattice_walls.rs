@@ -1,7 +1,7 @@
 //! Plane walls on the lattice of the programs: their elements in runs that touch each cell once.
 
 use super::GranularModel;
-use super::programs::with_wall_law;
+use super::wall_law::with_wall_law;
 use crate::method::pairwise::{LawTask, WallTouch};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;

@@ -49,6 +49,7 @@ mod totals;
 mod trials;
 mod wall_checks;
 pub mod wall_keys;
+mod wall_law;
 mod wall_sums;
 mod walls;
 

@@ -1,6 +1,7 @@
 //! Programs of a step, compiled for the parts that a model needs.
 
 use super::options::ProgramVersion;
+use super::wall_law::with_wall_law;
 use super::{DiscUniformity, GearValues, GranularModel, GranularScheme, Lengths};
 use crate::method::pairwise::{CarriedQuery, LawTask, SchemeTask};
 use crate::scene;
@@ -10,7 +11,7 @@ use stripmine_kernels::integrator::DERIVATIVES;
 use stripmine_kernels::integrator::gear::{Gear, GearCorrector, GearPredictor};
 use stripmine_kernels::integrator::velocity_verlet::{VelocityVerlet, VerletDrift, VerletKick};
 use stripmine_kernels::isa::{Memory, Op, OpClass, ProgramError};
-use stripmine_kernels::law::granular::{Contact, EqualDiscs, Granular};
+use stripmine_kernels::law::granular::{EqualDiscs, Granular};
 use stripmine_kernels::law::{Law, ParticleField};
 use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_kernels::mask::Mask;
@@ -255,15 +256,6 @@ pub(super) fn with_law<W: LawTask>(model: &GranularModel, task: W) -> W::Output 
         (true, DiscUniformity::Equal { disc, .. }) => task.with(Granular::<true, true> { contact, disc }),
         (false, DiscUniformity::Varying) => task.with(Granular::<false, false> { contact, disc: any }),
         (false, DiscUniformity::Equal { disc, .. }) => task.with(Granular::<false, true> { contact, disc }),
-    }
-}
-
-/// Applies a task to the law between discs and plane walls, which reads radius and mass of each disc.
-pub(super) fn with_wall_law<W: LawTask>((contact, friction): (Contact, bool), task: W) -> W::Output {
-    let any = EqualDiscs { radius: f64::NAN, inverse_mass: f64::NAN };
-    match friction {
-        true => task.with(Granular::<true, false> { contact, disc: any }),
-        false => task.with(Granular::<false, false> { contact, disc: any }),
     }
 }
 

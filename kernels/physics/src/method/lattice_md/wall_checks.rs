@@ -2,9 +2,9 @@
 
 use super::document::GranularDocument;
 use super::options::{ProgramVersion, SearchKind};
-use super::programs::with_wall_law;
 use super::scene::GranularScene;
 use super::wall_keys::{CLOSED_SIDES, ClosedSides, FLUX, SceneWall, WALLS};
+use super::wall_law::with_wall_law;
 use crate::domain::Domain;
 use crate::method::pairwise::{LawTask, PlaneMotion, PlaneWalls, WallTouch, each_touch};
 use crate::number::significant;
@@ -36,6 +36,34 @@ pub(super) fn closed_sides(scene: &GranularScene, particles: &Particles) -> Clos
         true => ClosedSides::Edge,
         false => ClosedSides::Wall,
     })
+}
+
+impl GranularScene {
+    /// Plane walls of the scene in its box, those of the user first, then those of closed sides; `reach` is the largest radius (length).
+    pub(super) fn plane_walls(&self, domain: &Domain, reach: f64, sides: ClosedSides) -> PlaneWalls {
+        let closed = (sides == ClosedSides::Wall).then(|| side_ends(domain)).unwrap_or_default();
+        let stated = self.plane.list.iter().enumerate();
+        let stated = stated.map(|(number, wall)| wall.plane((number + 1).to_string(), &self.law.contact));
+        let closed = closed.into_iter().map(|(side, ends)| {
+            SceneWall { ends, ..SceneWall::default() }.plane(side.to_owned(), &self.law.contact)
+        });
+        let walls = stated.chain(closed);
+        PlaneWalls::new(walls.collect(), domain, reach)
+    }
+}
+
+/// Closed sides of a box, by their names.
+fn side_ends(domain: &Domain) -> Vec<(&'static str, [[f64; 2]; 2])> {
+    let ([left, bottom], sides) = (domain.corner(), domain.lengths());
+    let [right, top] = [left + sides[0], bottom + sides[1]];
+    let all = [
+        (0, "left", [[left, bottom], [left, top]]),
+        (0, "right", [[right, bottom], [right, top]]),
+        (1, "bottom", [[left, bottom], [right, bottom]]),
+        (1, "top", [[left, top], [right, top]]),
+    ];
+    let closed = all.into_iter().filter(|(axis, ..)| !domain.is_periodic(*axis));
+    closed.map(|(_, side, ends)| (side, ends)).collect()
 }
 
 /// Errors of walls and lines that do not depend on where the discs are.

@@ -1,14 +1,13 @@
 //! Plane walls of a scene: their keys, and the walls that they make.
 
-use super::scene::GranularScene;
-use crate::domain::Domain;
-use crate::method::pairwise::{PlaneMotion, PlaneWall, PlaneWalls};
+use crate::method::pairwise::{PlaneMotion, PlaneWall};
 use crate::scene::Fallback::{Otherwise, Required};
 use crate::scene::KeyValueKind::{Choice, Number, Pair, Tables};
 use crate::scene::NumberRange::{Finite, NonNegative, Positive};
 use crate::scene::keys::define_keys;
 use crate::scene::{Binding, KeyValue, TableRow, Use};
 use crate::words::{Words, define_words};
+use stripmine_kernels::law::granular::Contact;
 
 const ALWAYS: Use = None;
 
@@ -114,9 +113,8 @@ impl SceneWall {
         pairs.chain(numbers.filter_map(|(name, number)| Some((name, KeyValue::Number(number?))))).collect()
     }
 
-    /// The wall with the coefficients of a scene's law where it has none.
-    fn plane(&self, label: String, scene: &GranularScene) -> PlaneWall {
-        let law = &scene.law.contact;
+    /// The wall with the coefficients of a law where it has none.
+    pub(super) fn plane(&self, label: String, law: &Contact) -> PlaneWall {
         let [normal_damping, shear_damping, friction] = self.own;
         PlaneWall {
             label,
@@ -163,32 +161,4 @@ impl SceneWalls {
     pub(super) fn segments(&self) -> Vec<[[f64; 2]; 2]> {
         self.list.iter().map(|wall| wall.ends).collect()
     }
-}
-
-impl GranularScene {
-    /// Plane walls of the scene in its box, those of the user first, then those of closed sides; `reach` is the largest radius (length).
-    pub(super) fn plane_walls(&self, domain: &Domain, reach: f64, sides: ClosedSides) -> PlaneWalls {
-        let closed = (sides == ClosedSides::Wall).then(|| closed_sides(domain)).unwrap_or_default();
-        let stated = self.plane.list.iter().cloned().enumerate();
-        let stated = stated.map(|(number, wall)| wall.plane((number + 1).to_string(), self));
-        let closed = closed
-            .into_iter()
-            .map(|(side, ends)| SceneWall { ends, ..SceneWall::default() }.plane(side.to_owned(), self));
-        let walls = stated.chain(closed);
-        PlaneWalls::new(walls.collect(), domain, reach)
-    }
-}
-
-/// Closed sides of a box, by their names.
-fn closed_sides(domain: &Domain) -> Vec<(&'static str, [[f64; 2]; 2])> {
-    let ([left, bottom], sides) = (domain.corner(), domain.lengths());
-    let [right, top] = [left + sides[0], bottom + sides[1]];
-    let all = [
-        (0, "left", [[left, bottom], [left, top]]),
-        (0, "right", [[right, bottom], [right, top]]),
-        (1, "bottom", [[left, bottom], [right, bottom]]),
-        (1, "top", [[left, top], [right, top]]),
-    ];
-    let closed = all.into_iter().filter(|(axis, ..)| !domain.is_periodic(*axis));
-    closed.map(|(_, side, ends)| (side, ends)).collect()
 }
