@@ -26,6 +26,23 @@ pub(super) fn segments(scene: &toml::Table, time: f64, window: [[f64; 2]; 2]) ->
     all.collect()
 }
 
+/// True if a wall of a scene moves.
+fn moves(wall: &toml::Value) -> bool {
+    wall.get("velocity").is_some() || wall.get("amplitude").is_some()
+}
+
+/// A scene with its plane walls at rest alone, and true if others move.
+pub(super) fn resting(scene: &toml::Table) -> (toml::Table, bool) {
+    let mut scene = scene.clone();
+    let walls = scene.get_mut("walls").and_then(toml::Value::as_array_mut);
+    let all = walls.as_ref().map_or(0, |walls| walls.len());
+    let still = walls.map_or(0, |walls| {
+        walls.retain(|wall| !moves(wall));
+        walls.len()
+    });
+    (scene, still < all)
+}
+
 /// Shifts to the images of a wall along each axis, and the period, if the side is periodic (length).
 fn images(scene: &toml::Table) -> [(Vec<f64>, Option<f64>); 2] {
     let periodic = scene.get("domain").and_then(|domain| domain.get("periodic"));
@@ -59,6 +76,17 @@ fn clipped(ends: [[f64; 2]; 2], [low, high]: [[f64; 2]; 2]) -> Option<[[f64; 2];
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A wall that moves is left out of what rests.
+    #[test]
+    fn moving_walls_do_not_rest() {
+        let scene = "[[walls]]\nfrom = [0.0, 1.0]\nto = [1.0, 1.0]\nvelocity = [1.0, 0.0]\n\
+            [[walls]]\nfrom = [0.0, 2.0]\nto = [1.0, 2.0]\n";
+        let (rest, others_move) = resting(&scene.parse().unwrap());
+        let window = [[0.0, 0.0], [5.0, 5.0]];
+        assert!(others_move && segments(&rest, 7.0, window) == [[[0.0, 2.0], [1.0, 2.0]]]);
+        assert!(!resting(&rest).1 && !resting(&toml::Table::new()).1);
+    }
 
     /// A wall that has moved by one and a half periods is seen in two parts; one outside the window is not seen.
     #[test]
