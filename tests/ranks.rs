@@ -196,6 +196,7 @@ fn disc_on_a_rim_is_in_one_cell() {
         "machine.precision=f32",
         "particles.seed=45",
         "domain.periodic=[true, false]",
+        "domain.closed_sides=edge",
         "domain.sides=[17.5, 161.5]",
         "particles.count=1367",
         "integrator.values=4",

@@ -65,7 +65,8 @@ fn thin_box_has_the_sides_of_the_scene() {
     let scene = discs([6.0, 0.9], "[[1.0, 0.45], [4.0, 0.45]]", "[[0.0, 0.5], [0.0, 0.0]]", 1e-2);
     let mut found = Vec::new();
     for (name, engine) in ENGINES {
-        let checked = checked(&scene, &[engine, &["domain.periodic=[true, false]"]]);
+        let checked =
+            checked(&scene, &[engine, &["domain.periodic=[true, false]", "domain.closed_sides=edge"]]);
         let mut method = assemble(&checked).unwrap();
         let failure =
             (0..200).find_map(|_| method.step().err()).unwrap_or_else(|| panic!("{name}: never left"));
@@ -327,7 +328,7 @@ fn disc_leaving_for_a_moment_is_detected() {
     let scene = discs([20.0, 20.0], "[[10.0, 19.9], [10.0, 5.0]]", "[[0.0, 1.0], [0.1, 0.0]]", 0.005)
         .replace(
             "sides = [20.0, 20.0]",
-            "sides = [20.0, 20.0]\nperiodic = [true, false]\ngravity = [0.0, -4.0]",
+            "sides = [20.0, 20.0]\nperiodic = [true, false]\nclosed_sides = \"edge\"\ngravity = [0.0, -4.0]",
         );
     let failure = |engine: &[&str], more: &[&str]| {
         let mut method = assemble(&checked(&scene, &[engine, more])).unwrap();

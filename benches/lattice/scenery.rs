@@ -42,6 +42,8 @@ pub fn dense<P: Precision>(
         sides: [0, 1].map(|axis| counts[axis] as f64 * edge[axis]),
         mask,
         coordinates: Coordinates::CellRelative,
+        walls: std::sync::Arc::default(),
+        lines: vec![],
         contact: CONTACT,
         friction,
         discs: DiscUniformity::Varying,

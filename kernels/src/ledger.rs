@@ -17,6 +17,8 @@ pub enum VectorLength {
     PaddedCells,
     /// Halo cells that repeat a cell.
     HaloCells,
+    /// Elements of walls, once for each cell that can touch them.
+    WallElements,
     /// Entries of neighbour lists; depends on the data.
     Candidates,
     /// Candidates near enough to evaluate the law; depends on the data.
@@ -32,6 +34,7 @@ impl VectorLength {
             VectorLength::SweptCells => "LMAX + row ends",
             VectorLength::PaddedCells => "LMAX + halo",
             VectorLength::HaloCells => "halo",
+            VectorLength::WallElements => "wall cells",
             VectorLength::Candidates => "candidates",
             VectorLength::Pairs => "pairs",
         }

@@ -2,7 +2,7 @@
 
 use crate::overrides::GivenOverrides;
 use crate::particles::dimensions;
-use stripmine_physics::method::{METHODS, MethodEntry, Prepared, prepare, vocabularies};
+use stripmine_physics::method::{METHODS, MethodEntry, ObservedQuantity, Prepared, prepare, vocabularies};
 use stripmine_physics::scene::{SceneErrors, SceneValues};
 
 /// Name in errors of a scene given as text.
@@ -54,5 +54,10 @@ impl CheckedScene {
         let (prepared, entry) = prepare(values.clone(), METHODS)?;
         let dimensions = dimensions(prepared.particles());
         Ok(CheckedScene { prepared, entry, dimensions, values })
+    }
+
+    /// Observed quantities of the scene.
+    pub(crate) fn quantities(&self) -> &'static [ObservedQuantity] {
+        self.prepared.quantities(self.entry)
     }
 }

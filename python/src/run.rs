@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::io::{FileError, regular_file};
-use stripmine_physics::method::{METHODS, observer};
+use stripmine_physics::method::{METHODS, observed_quantities};
 use stripmine_physics::reported::ErrorClass;
 use stripmine_physics::run::{FinishedRun, TableError, TableReader, averages_of};
 
@@ -151,7 +151,7 @@ impl Run {
 fn thermo(path: &Path) -> Result<Table, TableError> {
     let mut table = TableReader::open(path)?;
     let names = table.columns().to_vec();
-    let units = observer(METHODS, &names).map(|method| method.quantities).unwrap_or_default();
+    let units = observed_quantities(METHODS, &names).unwrap_or_default();
     let mut values = vec![vec![]; names.len()];
     while let Some(row) = table.next_row()? {
         values.iter_mut().zip(row).for_each(|(column, value)| column.push(value));

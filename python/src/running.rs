@@ -43,12 +43,9 @@ pub(crate) fn carry_out(
     existing: ExistingRun,
 ) -> PyResult<Result<(), RunError>> {
     let CheckedScene { prepared, entry, .. } = checked;
-    let job = RunJob {
-        prepared: prepared.into(),
-        quantities: entry.quantities,
-        program: &built(),
-        is_open_ended: false,
-    };
+    let quantities = prepared.quantities(entry);
+    let job =
+        RunJob { prepared: prepared.into(), quantities, program: &built(), is_open_ended: false };
     let mut notes = vec![];
     let notice = |note: &str| notes.push(note.to_owned());
     let work = |interrupted: &AtomicBool| run(job, folder, existing, interrupted, |_, _| {}, notice);

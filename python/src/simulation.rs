@@ -411,7 +411,7 @@ impl Simulation {
         })?;
         let values = seen.map_err(|failure: PhysicsFailure| exceptions::of(py, &failure))?;
         let seen = PyDict::new(py);
-        for (quantity, value) in self.checked.entry.quantities.iter().zip(values) {
+        for (quantity, value) in self.checked.quantities().iter().zip(values) {
             seen.set_item(quantity.name, value)?;
         }
         Ok(seen)
@@ -421,7 +421,7 @@ impl Simulation {
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let units = PyDict::new(py);
-        for quantity in self.checked.entry.quantities {
+        for quantity in self.checked.quantities() {
             units.set_item(quantity.name, quantity.unit)?;
         }
         Ok(units)

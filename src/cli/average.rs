@@ -13,11 +13,11 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::io::owned_folder::{FolderKind, names_in};
-use stripmine_physics::method::{Methods, method};
+use stripmine_physics::method::{Methods, method, observed_quantities};
 use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::run::{
     FinishedError, FinishedRun, FunctionPoint, Number, ScenePoint, ScenePoints, StructureFunction,
-    averages_of, function_of, functions_of, points_of,
+    TableReader, averages_of, function_of, functions_of, points_of,
 };
 use stripmine_physics::structure::{NAMES, observable};
 
@@ -113,7 +113,9 @@ impl AverageVerb {
         let kind = scene.as_ref().and_then(|scene| scene.get("method")?.get("kind")?.as_str());
         let entry = kind.and_then(|kind| method(methods, kind));
         let entry = entry.ok_or_else(|| FinishedError::NoMethod(folders[0].clone()))?;
-        check_names(&self.of, entry.quantities).map_err(CommandFailure::Options)?;
+        let table = TableReader::open(&folders[0].join("thermo.csv")).ok();
+        let quantities = table.and_then(|table| observed_quantities(methods, table.columns()));
+        check_names(&self.of, quantities.unwrap_or(entry.quantities)).map_err(CommandFailure::Options)?;
         let names =
             |runs: Vec<usize>| runs.into_iter().map(|run| folders[run].display().to_string()).collect();
         let point = |ScenePoint { values, runs, averages }| TablePoint {

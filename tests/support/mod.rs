@@ -51,6 +51,8 @@ pub fn gas(least: usize, packing_fraction: f64, seed: u64) -> (GranularModel, Pa
         sides: [0, 1].map(|axis| counts[axis] as f64 * edge[axis]),
         mask,
         coordinates: Coordinates::CellRelative,
+        walls: std::sync::Arc::default(),
+        lines: vec![],
         contact: CONTACT,
         friction: true,
         discs: DiscUniformity::Varying,

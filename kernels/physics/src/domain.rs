@@ -99,6 +99,25 @@ impl Domain {
         x.hypot(y)
     }
 
+    /// Distance of a position from a segment, the shortest across periodic sides; both are at most a period outside the box (length).
+    pub(crate) fn distance_to_segment(&self, position: [f64; 2], [a, b]: &[[f64; 2]; 2]) -> f64 {
+        let shifts = [0, 1].map(|axis| match self.sides[axis] {
+            BoxSide::Periodic(side) => vec![-2.0 * side, -side, 0.0, side, 2.0 * side],
+            _ => vec![0.0],
+        });
+        let mut nearest = f64::INFINITY;
+        for &x in &shifts[0] {
+            for &y in &shifts[1] {
+                let from = [position[0] + x - a[0], position[1] + y - a[1]];
+                let along = [b[0] - a[0], b[1] - a[1]];
+                let square = along[0] * along[0] + along[1] * along[1];
+                let share = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
+                nearest = nearest.min((from[0] - share * along[0]).hypot(from[1] - share * along[1]));
+            }
+        }
+        nearest
+    }
+
     /// Image of a position inside the box along the periodic sides.
     #[inline(always)]
     pub fn wrapped<const D: usize>(&self, position: [f64; D]) -> [f64; D] {

@@ -15,6 +15,17 @@ pub struct ObservationRequest {
     pub energy: bool,
 }
 
+/// Coefficient of a contact that a wall may have of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WallCoefficient {
+    /// Normal damping.
+    NormalDamping,
+    /// Tangential damping.
+    ShearDamping,
+    /// Friction coefficient.
+    Friction,
+}
+
 /// Environment of a law: everything it may read and write.
 ///
 /// *Own* is the particle the law is evaluated for, *partner* the other one. A law never subtracts positions itself: the
@@ -40,6 +51,11 @@ pub trait Env<const DIM: usize>: Copy {
     /// Loads for each pair numbers of a row of a table, one of each of some columns. Rows are numbered from 1; NaN where the number is
     /// not positive. A program panics at a number beyond the last row.
     fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: Self::V) -> [Self::V; N];
+    /// A coefficient of the contact: that of the law, unless the partner is a wall with another.
+    #[inline(always)]
+    fn coefficient(self, _which: WallCoefficient, of_law: f64) -> Self::V {
+        self.uniform(of_law)
+    }
     /// True if the predicate is false for all pairs and this execution takes early exits.
     fn none(self, predicate: <Self::V as Vector>::Predicate) -> bool;
     /// Adds to a sum of the own particle.

@@ -1,7 +1,7 @@
 //! Granular discs: contacts with a spring, viscous damping, Coulomb friction and rotation.
 
 use super::spring::Spring;
-use super::{Axis::X, Axis::Y, Env, Law, ParticleField, ParticleSum};
+use super::{Axis::X, Axis::Y, Env, Law, ParticleField, ParticleSum, WallCoefficient};
 use crate::isa::{Predicate, Vector};
 
 /// Lever arm of the tangential force, measured from a disc's centre.
@@ -151,7 +151,7 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let effective_mass = uniform(1.0) / (own.inverse_mass + inverse_mass);
         let overlap = penetration.max(zero);
         let elastic = self.contact.elastic(uniform, overlap);
-        let rate = uniform(normal_damping) * effective_mass;
+        let rate = env.coefficient(WallCoefficient::NormalDamping, normal_damping) * effective_mass;
         let separation = vx * nx + vy * ny;
         let damping = rate * separation;
         let floor = uniform(if cohesionless { 0.0 } else { f64::NEG_INFINITY });
@@ -200,8 +200,9 @@ impl<const FRICTION: bool, const EQUAL: bool> Law<2> for Granular<FRICTION, EQUA
         let spin = own_spin + surfaces[1] * omega;
         let sliding = vy * nx - vx * ny;
         let slip = sliding - spin;
-        let drag = (uniform(shear_damping) * effective_mass) * slip;
-        let limit = uniform(friction) * normal.abs();
+        let rate = env.coefficient(WallCoefficient::ShearDamping, shear_damping) * effective_mass;
+        let drag = rate * slip;
+        let limit = env.coefficient(WallCoefficient::Friction, friction) * normal.abs();
         let shear = (zero - drag).min(limit).max(zero - limit);
         let fs = E::V::select(contact, shear, zero); // (9)
 

@@ -12,7 +12,7 @@ mod table;
 pub mod tabulated;
 pub mod yukawa;
 
-pub use environment::{Env, Law, ObservationRequest};
+pub use environment::{Env, Law, ObservationRequest, WallCoefficient};
 pub use quantity::{Axis, ParticleField, ParticleSum};
 pub use stated::{StatedEnv, check};
 pub use table::LawTable;

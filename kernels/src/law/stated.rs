@@ -4,7 +4,7 @@
 //! sweep only through [`StatedEnv`], which panics at anything else. Both lists are constants and so is every field a law names: the
 //! compiled check is empty.
 
-use super::environment::{Env, Law};
+use super::environment::{Env, Law, WallCoefficient};
 use super::quantity::{ParticleField, ParticleSum};
 use super::table::LawTable;
 use crate::isa::{ProgramError, Vector};
@@ -155,6 +155,10 @@ impl<const DIM: usize, E: Env<DIM>, L: Law<DIM>> Env<DIM> for StatedEnv<E, L> {
     #[inline(always)]
     fn lookup<const N: usize>(self, table: &LawTable, columns: [usize; N], number: E::V) -> [E::V; N] {
         self.env.lookup(table, columns, number)
+    }
+    #[inline(always)]
+    fn coefficient(self, which: WallCoefficient, of_law: f64) -> E::V {
+        self.env.coefficient(which, of_law)
     }
     #[inline(always)]
     fn none(self, predicate: <E::V as Vector>::Predicate) -> bool {

@@ -6,3 +6,4 @@ pub mod lattice;
 mod lookup;
 pub mod neighbor_list;
 pub mod pair;
+pub mod walls;

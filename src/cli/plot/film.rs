@@ -2,6 +2,7 @@
 
 use super::colouring::{ColouringError, RunColouring};
 use super::particles::{SHOWN, WIDTH, point_radius};
+use super::segments::{resting, segments};
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::section::{Film, FilmFrame as Moment, FilmSide};
@@ -222,6 +223,9 @@ impl FilmFrames {
         let grain_count = cast.particles.iter().filter(|it| it.kind == ParticleKind::Grain).count();
         let gravity = scene.and_then(|scene| window::domain_pair(scene, "gravity")).unwrap_or([0.0; 2]);
         let [width, height] = [right - left, high - low];
+        let (rest, walls_move) = scene.map_or_else(Default::default, resting);
+        let planes =
+            segments(&rest, 0.0, window).into_iter().map(|ends| FilmSide { ends, is_periodic: false });
         let film = Film {
             title: format!(
                 "{}, time {} to {}",
@@ -231,7 +235,7 @@ impl FilmFrames {
             ),
             units: UnitSystem::of(scene).of_length_and_time(),
             window,
-            sides: sides(last, bounds, window),
+            sides: sides(last, bounds, window).into_iter().chain(planes).collect(),
             falls: if height > width { gravity[1] < 0.0 } else { gravity[0] > 0.0 },
             radii: moving.iter().map(|&place| radius(&cast.particles[place])).collect(),
             fixed: fixed
@@ -244,7 +248,10 @@ impl FilmFrames {
             shades,
         };
         let beyond = beyond as f64 / (self.kept.len() * moving.len()).max(1) as f64;
-        let notes = self.notes(&cast, &film, is_of_points, beyond);
+        let mut notes = self.notes(&cast, &film, is_of_points, beyond);
+        if walls_move {
+            notes.push("Plane walls that move are not shown.".to_owned());
+        }
         Ok((film, notes))
     }
 

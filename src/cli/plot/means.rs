@@ -3,7 +3,7 @@
 use crate::cli::display::{mean_or_reason, reasons};
 use crate::report::figure::{ChartBand, Series, Style};
 use stripmine_physics::averages::{Average, AverageOutcome, AveragedRows, Estimate, RunAverages};
-use stripmine_physics::method::{Methods, QuantityKind, observer};
+use stripmine_physics::method::{Methods, QuantityKind, observed_quantities};
 use stripmine_physics::number::{significant, with_error_bar};
 
 /// Legend of the ribbons.
@@ -21,10 +21,10 @@ pub(super) struct ColumnMeans {
 impl ColumnMeans {
     /// Means of the rows of a table whose first column is the step; none if no method has these columns.
     pub(super) fn of(columns: &[String], rows: &[Vec<f64>], methods: Methods) -> Option<ColumnMeans> {
-        let method = observer(methods, columns)?;
-        let mut all = AveragedRows::new(method.quantities);
+        let quantities = observed_quantities(methods, columns)?;
+        let mut all = AveragedRows::new(quantities);
         rows.iter().for_each(|row| all.add(&row[1..]));
-        let time = 1 + method.quantities.iter().position(|it| it.kind == QuantityKind::Time)?;
+        let time = 1 + quantities.iter().position(|it| it.kind == QuantityKind::Time)?;
         let ends = [rows.first()?[time], rows.last()?[time]];
         Some(ColumnMeans { averages: RunAverages::of(&all).quantities, ends })
     }

@@ -5,6 +5,7 @@ mod film;
 mod means;
 mod observed;
 mod particles;
+mod segments;
 mod structure;
 mod window;
 

@@ -8,7 +8,7 @@ use crate::report::terminal;
 use crate::statistics::quantile;
 use std::collections::BTreeMap;
 use std::path::Path;
-use stripmine_physics::method::{Methods, observer};
+use stripmine_physics::method::{Methods, observed_quantities};
 use stripmine_physics::number::significant;
 use stripmine_physics::quoted::quoted;
 use stripmine_physics::reported::{ErrorClass, Reported};
@@ -122,7 +122,7 @@ impl ObservableTable {
         names: &[String],
         methods: Methods,
     ) -> Result<Vec<SelectedColumn>, ObservableError> {
-        let quantities = observer(methods, &self.columns).map_or(&[][..], |method| method.quantities);
+        let quantities = observed_quantities(methods, &self.columns).unwrap_or_default();
         let of = |column: usize| {
             let name = &self.columns[column];
             let unit = quantities.iter().find(|quantity| quantity.name == name).map_or("", |it| it.unit);

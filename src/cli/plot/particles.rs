@@ -1,6 +1,7 @@
 //! Pictures of the particles of a run: its last state and, in a long box, the density along it over time.
 
 use super::colouring::{ColouringError, RunColouring};
+use super::segments::segments;
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::figure::{ChartAxis, Drawing, DrawnShape, Figure, Guide, HeatMap, Picture, Tint};
@@ -150,7 +151,8 @@ fn state_figure(
     // Shapes outside the window would cover the labels around it.
     let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
     let level = bounds[1].into_iter().filter(|at| up.contains(at)).map(|at| [[x, at], [x_end, at]]);
-    let walls = upright.chain(level).map(|ends| DrawnShape::Line { ends: ends.map(place) });
+    let planes = scene.map_or(vec![], |scene| segments(scene, frame.time, [[x, y], [x_end, y_end]]));
+    let walls = upright.chain(level).chain(planes).map(|ends| DrawnShape::Line { ends: ends.map(place) });
     let is_inside = |position: [f64; 3]| {
         let [a, b] = flat(position);
         across.contains(&a) && up.contains(&b)

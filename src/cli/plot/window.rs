@@ -32,7 +32,12 @@ pub(super) fn has_point_bodies(frame: &ParticleFrame, bounds: [[f64; 2]; 2]) -> 
 
 /// Pair of numbers from the scene's `domain`.
 pub(super) fn domain_pair(scene: &toml::Table, key: &str) -> Option<[f64; 2]> {
-    let pair = scene.get("domain")?.get(key)?.as_array()?;
+    pair(scene.get("domain")?.get(key)?)
+}
+
+/// Pair of numbers of a scene.
+pub(super) fn pair(value: &toml::Value) -> Option<[f64; 2]> {
+    let pair = value.as_array()?;
     let number = |value: &toml::Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     Some([pair.first().and_then(number)?, pair.get(1).and_then(number)?])
 }

@@ -138,12 +138,8 @@ impl RunVerb {
             }
         };
         let scene = prepared.scene.clone();
-        let job = RunJob {
-            prepared: prepared.into(),
-            quantities: entry.quantities,
-            program: &built(),
-            is_open_ended: false,
-        };
+        let quantities = prepared.quantities(entry);
+        let job = RunJob { prepared: prepared.into(), quantities, program: &built(), is_open_ended: false };
         let work = || run(job, folder, existing, signals::interruption_flag(), progress, notice);
         let ending = ranks::with_backend(crew, work);
         clear_progress();

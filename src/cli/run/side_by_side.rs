@@ -119,12 +119,8 @@ impl SideBySide<'_> {
         notice: impl FnMut(&str) + Send,
     ) -> Result<Summary, FailedRun> {
         let (prepared, entry) = (self.prepare)(overrides)?;
-        let job = RunJob {
-            prepared: prepared.into(),
-            quantities: entry.quantities,
-            program: &built(),
-            is_open_ended: false,
-        };
+        let quantities = prepared.quantities(entry);
+        let job = RunJob { prepared: prepared.into(), quantities, program: &built(), is_open_ended: false };
         match run(job, folder, self.existing, signals::interruption_flag(), progress, notice) {
             Ok(Ending::Done(summary)) => {
                 for warning in &summary.warnings {

@@ -102,8 +102,8 @@ impl ScanVerb {
         };
         let folder = self.folder();
         let points = self.checked_points(&keys, &folder, &values, methods)?;
-        let Some(CheckedPoint { entry, .. }) = points.first() else { return Ok(()) };
-        check_names(&self.of, entry.quantities).map_err(CommandFailure::Options)?;
+        let Some(CheckedPoint { entry, quantities, .. }) = points.first() else { return Ok(()) };
+        check_names(&self.of, quantities).map_err(CommandFailure::Options)?;
         let own = self.claimed_folder(&folder, &points)?;
         let shared = values(&points[0].runs[0].overrides)?.sharing_start();
         let with = |overrides: &[String]| -> Result<(Prepared, &'static MethodEntry), CommandFailure> {

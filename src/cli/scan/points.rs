@@ -10,7 +10,7 @@ use std::path::Path;
 use stripmine_physics::averages::joined;
 use stripmine_physics::input::MistakeList;
 use stripmine_physics::memory::MemoryForecast;
-use stripmine_physics::method::{MethodEntry, Methods, Prepared, prepare};
+use stripmine_physics::method::{MethodEntry, Methods, ObservedQuantity, Prepared, prepare};
 use stripmine_physics::reported::ErrorClass;
 use stripmine_physics::run::{FinishedRun, Summary, averages_of};
 use stripmine_physics::scene::{MistakeKind, SceneErrors, SceneValues, Spot};
@@ -22,6 +22,8 @@ pub(super) struct CheckedPoint {
     pub(super) runs: Vec<PlannedRun>,
     pub(super) memory: MemoryForecast,
     pub(super) entry: &'static MethodEntry,
+    /// Observed quantities.
+    pub(super) quantities: &'static [ObservedQuantity],
     /// Resolved scene of its first run.
     pub(super) scene: String,
 }
@@ -101,8 +103,9 @@ impl ScanVerb {
         }
         let (prepared, entry) = prepare(values(&runs[0].overrides)?, methods)?;
         prepared.memory.fits(&self.scene)?;
+        let quantities = prepared.quantities(entry);
         let Prepared { memory, scene, .. } = prepared;
-        Ok(CheckedPoint { point: point.clone(), runs, memory, entry, scene })
+        Ok(CheckedPoint { point: point.clone(), runs, memory, entry, quantities, scene })
     }
 }
 

@@ -2,10 +2,10 @@
 
 use crate::console::{CommandFailure, Common, print_json, print_text};
 use serde::Serialize;
-use stripmine_physics::method::{Methods, method};
+use stripmine_physics::method::{MethodEntry, Methods, method};
 use stripmine_physics::number::count_with_noun;
 use stripmine_physics::reported::{ErrorClass, Reported};
-use stripmine_physics::scene::{Fallback, Key, SECTIONS};
+use stripmine_physics::scene::{Fallback, Key, KeyValueKind, SECTIONS};
 
 /// Key as data.
 #[derive(PartialEq, Serialize)]
@@ -60,6 +60,16 @@ impl KeyLine {
     }
 }
 
+/// Keys of a method, those of the tables of a list after all others.
+fn key_lines(entry: &MethodEntry) -> Vec<KeyLine> {
+    let keys = || entry.vocabulary.keys.keys();
+    let fields = keys().flat_map(|key| match key.kind {
+        KeyValueKind::Tables(fields) => fields.iter().copied(),
+        _ => [].iter().copied(),
+    });
+    keys().chain(fields).map(KeyLine::of).collect()
+}
+
 /// A key of some methods.
 #[derive(Serialize)]
 struct MatchingKey {
@@ -93,7 +103,7 @@ pub(super) fn keys(what: &[String], common: &Common, methods: Methods) -> Result
     let words: Vec<String> = words.iter().map(|word| word.to_lowercase()).collect();
     let has_words = |line: &KeyLine| words.iter().all(|word| line.has(word));
     let Some(entry) = entry else { return matching_keys(&what.join(" "), &has_words, common, methods) };
-    let lines = entry.vocabulary.keys.keys().map(KeyLine::of).filter(has_words).collect::<Vec<_>>();
+    let lines: Vec<KeyLine> = key_lines(entry).into_iter().filter(has_words).collect();
     if lines.is_empty() {
         return Err(NoSuchKey(what.join(" ")).into());
     }
@@ -101,11 +111,17 @@ pub(super) fn keys(what: &[String], common: &Common, methods: Methods) -> Result
         return print_json(&lines);
     }
     let mut text = format!("Keys of {}\n", entry.vocabulary.keys.method);
-    for (section, holds) in std::iter::once(("", "at the top of the file")).chain(SECTIONS) {
+    let sections = std::iter::once(("", "at the top of the file")).chain(SECTIONS);
+    let headings = sections.map(|(section, holds)| match section {
+        "" => (section, holds.to_owned()),
+        _ => (section, format!("[{section}]: {holds}")),
+    });
+    let lists = entry.vocabulary.keys.keys().filter(|key| matches!(key.kind, KeyValueKind::Tables(_)));
+    let headings = headings.chain(lists.map(|key| (key.name, format!("[[{}]]: each", key.name))));
+    for (section, heading) in headings {
         let of_section: Vec<&KeyLine> = lines.iter().filter(|line| line.section == section).collect();
         if !of_section.is_empty() {
-            let heading = if section.is_empty() { String::new() } else { format!("[{section}]: ") };
-            text += &format!("\n{heading}{holds}\n\n");
+            text += &format!("\n{heading}\n\n");
         }
         of_section.iter().for_each(|line| text += &line.text(""));
     }
@@ -122,7 +138,7 @@ fn matching_keys(
 ) -> Result<(), CommandFailure> {
     let mut found: Vec<MatchingKey> = vec![];
     for entry in methods {
-        for line in entry.vocabulary.keys.keys().map(KeyLine::of).filter(is_wanted) {
+        for line in key_lines(entry).into_iter().filter(is_wanted) {
             let is_same = |known: &&mut MatchingKey| known.line == line;
             match found.iter_mut().find(is_same) {
                 Some(known) => known.methods.push(entry.vocabulary.keys.method),

@@ -313,6 +313,11 @@ impl Prepared {
         setting.with_bins(self.output.structure_range, self.output.structure_bins)
     }
 
+    /// Observed quantities: those of its method, `entry`, and those of the scene.
+    pub fn quantities(&self, entry: &MethodEntry) -> &'static [ObservedQuantity] {
+        entry.quantities_with(&self.model.own_quantities())
+    }
+
     /// Starts a simulation.
     ///
     /// # Errors
@@ -335,6 +340,16 @@ impl Prepared {
 pub trait Startable: Send + Sync {
     /// The particles at the start.
     fn particles(&self) -> &Particles;
+
+    /// Names of quantities that the scene has beside those of its method: columns of thermo.csv after these.
+    fn own_quantities(&self) -> Vec<String> {
+        vec![]
+    }
+
+    /// True if plane walls inside the box keep discs from parts of it.
+    fn has_segments(&self) -> bool {
+        false
+    }
 
     /// Vector programs of a step or its forces, which are counted, listed and timed by models; none where a method has no vector programs.
     fn programs(&self) -> Vec<VectorProgram> {

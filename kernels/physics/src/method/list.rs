@@ -28,13 +28,6 @@ pub fn method(methods: Methods, name: &str) -> Option<&'static MethodEntry> {
     methods.iter().copied().find(|method| method.vocabulary.keys.method == name)
 }
 
-/// Returns the method that observes exactly these columns, in order, after the step.
-pub fn observer(methods: Methods, columns: &[String]) -> Option<&'static MethodEntry> {
-    let names = |method: &MethodEntry| method.quantities.iter().map(|quantity| quantity.name);
-    let is_its = |method: &&'static MethodEntry| names(method).eq(columns.iter().skip(1).map(String::as_str));
-    methods.iter().copied().find(is_its)
-}
-
 /// Loads and prepares a scene, given as a preset's name or a file's path, with overrides `section.key=value`; also returns its method.
 ///
 /// # Errors
@@ -61,7 +54,14 @@ pub fn prepare(
     let wrong = wrong_target(&values, entry);
     let asked = requested_temperature(&values, &entry.vocabulary.keys);
     let spot = values.spot(&STRUCTURE);
-    match ((entry.prepare)(values), wrong) {
+    let target = match values.value(&TARGET) {
+        Some(KeyValue::Target(target)) => target.quantity,
+        _ => String::new(),
+    };
+    let prepared = (entry.prepare)(values);
+    // A scene may have quantities of its own.
+    let is_own = prepared.as_ref().is_ok_and(|it| it.model.own_quantities().contains(&target));
+    match (prepared, wrong.filter(|_| !is_own)) {
         (Ok(mut prepared), None) => match missing_precondition(&prepared) {
             Some(why) => Err(spot.error(MistakeKind::Contradiction, why).into()),
             None => {
@@ -108,6 +108,9 @@ fn missing_precondition(prepared: &Prepared) -> Option<String> {
             if prepared.domain.periodic() == [false; 2] =>
         {
             Some("needs a periodic side for its waves")
+        }
+        SamplingKind::Once { asks: SampleData::Distances, .. } if prepared.model.has_segments() => {
+            Some("is not known beside plane walls: the area that discs can reach is that of the whole box")
         }
         SamplingKind::Once { asks: SampleData::Forces, .. } if prepared.model.pair_forces().is_none() => {
             Some("needs pair forces that act at any moment: this method has none")

@@ -60,6 +60,11 @@ pub trait Stepwise: Send + Sized {
     /// Applies a function to the observation of this moment.
     fn with_observation<R>(run: &Stepped<Self>, work: impl FnOnce(&Self::Seen) -> R) -> R;
 
+    /// Values of the quantities that the scene has of its own.
+    fn own_values(_run: &Stepped<Self>) -> Vec<f64> {
+        vec![]
+    }
+
     /// As [`Simulation::per_particle`], where the method has more data than the state.
     fn per_particle(run: &Stepped<Self>) -> &dyn PerParticle {
         run.state.per_particle()
@@ -208,7 +213,8 @@ impl<M: Stepwise> Simulation for Stepped<M> {
     }
 
     fn observe(&self) -> Vec<f64> {
-        let seen = M::with_observation(self, |seen| values(M::OBSERVABLES, seen));
+        let mut seen = M::with_observation(self, |seen| values(M::OBSERVABLES, seen));
+        seen.extend(M::own_values(self));
         self.unless_rank_lost(seen).unwrap_or_else(|| vec![f64::NAN; M::OBSERVABLES.len()])
     }
 

@@ -35,6 +35,13 @@ impl ContactSums {
         sums
     }
 
+    /// Adds a contact with a plane wall, which has no virial, by its stored energy and its depth (a fraction of the radius).
+    pub(crate) fn add(&mut self, elastic: f64, depth: f64) {
+        self.count += 1;
+        self.elastic += elastic;
+        self.deepest = self.deepest.max(depth);
+    }
+
     /// Adds the sums of grains that follow.
     pub(super) fn join(&mut self, more: &ContactSums) {
         self.count += more.count;

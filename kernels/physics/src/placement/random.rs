@@ -17,6 +17,8 @@ pub(crate) struct RandomPlacement<'a> {
     pub room: [[f64; 2]; 2],
     /// Discs already placed.
     pub(crate) obstacles: &'a [Particle],
+    /// Segments that no disc may cut (length).
+    pub(crate) barriers: &'a [[[f64; 2]; 2]],
     /// Number of discs.
     pub count: usize,
     /// Mean radius (length).
@@ -80,8 +82,19 @@ const TRIES: usize = 200_000;
 /// # Errors
 /// [`PlacementJammed`] if a disc finds no free space.
 pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Particle>, PlacementJammed> {
-    let RandomPlacement { domain, room, obstacles, count, radius: mean, cut, second, mass, seed, .. } =
-        *filling;
+    let RandomPlacement {
+        domain,
+        room,
+        obstacles,
+        barriers,
+        count,
+        radius: mean,
+        cut,
+        second,
+        mass,
+        seed,
+        ..
+    } = *filling;
     let obstacle = obstacles.iter().map(|disc| disc.radius).fold(0.0, f64::max);
     let largest = second.largest(mean) * (1.0 + cut);
     let mut near = NeighbourSearch::new(domain, (2.0 * largest).max(largest + obstacle));
@@ -113,6 +126,7 @@ pub(crate) fn place_randomly(filling: &RandomPlacement<'_>) -> Result<Vec<Partic
         let free = |position: &[f64; 2]| {
             near.candidates_near(*position)
                 .all(|(other, there)| domain.distance(*position, there) > radius + circles[other as usize])
+                && barriers.iter().all(|ends| domain.distance_to_segment(*position, ends) > radius)
         };
         let position = (0..TRIES).map(|_| draw()).find(free).ok_or(jammed)?;
         near.add(circles.len() as u32, position);
@@ -200,6 +214,7 @@ mod tests {
             domain: Domain::planar([-2.0, 1.0], [30.0, 20.0], [true, false]),
             room: [[-2.0, 1.0], [28.0, 21.0]],
             obstacles: &[],
+            barriers: &[],
             count: 300,
             radius: 0.5,
             spread: 0.05,

@@ -5,7 +5,7 @@ use super::identity::{first_difference, physics};
 use super::table::{TableError, TableReader};
 use crate::averages::{AveragedRows, RunAverages, joined};
 use crate::io::{FileError, regular_file};
-use crate::method::{Methods, ObservedQuantity, observer};
+use crate::method::{Methods, ObservedQuantity, observed_quantities};
 use crate::quoted;
 use crate::reported::{ErrorClass, FilePlace, Reported};
 use std::path::{Path, PathBuf};
@@ -155,8 +155,9 @@ impl FinishedRun {
     pub fn read(folder: &Path, methods: Methods) -> Result<FinishedRun, FinishedError> {
         let path = folder.join(THERMO);
         let table = TableReader::open(&path)?;
-        let method = observer(methods, table.columns()).ok_or(FinishedError::NoMethod(path))?;
-        let rows = rows_of(table, method.quantities)?;
+        let quantities =
+            observed_quantities(methods, table.columns()).ok_or(FinishedError::NoMethod(path))?;
+        let rows = rows_of(table, quantities)?;
         let path = folder.join(SCENE);
         let scene = regular_file::read(&path, LONGEST_SCENE).map_err(FileError::at(&path, "reading"))?;
         let scene = String::from_utf8_lossy(&scene).into_owned();

@@ -89,8 +89,15 @@ fn order(a: Option<&Value>, b: Option<&Value>) -> Ordering {
 /// digest.
 fn scene_values(run: &FinishedRun) -> BTreeMap<String, Value> {
     let mut values = BTreeMap::new();
-    let mut section = String::new();
+    let (mut section, mut tables) = (String::new(), BTreeMap::new());
     for line in run.physics() {
+        if let Some(name) = line.strip_prefix("[[") {
+            // Tables of a list have numbers.
+            let name = name.trim_end_matches(']');
+            let number = tables.entry(name).and_modify(|number| *number += 1).or_insert(1);
+            section = format!("{name}.{number}.");
+            continue;
+        }
         if let Some(name) = line.strip_prefix('[') {
             section = format!("{}.", name.trim_end_matches(']'));
         } else if let Some((_, digest)) = line.strip_prefix('#').and_then(|comment| comment.rsplit_once(' '))

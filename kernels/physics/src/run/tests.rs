@@ -26,12 +26,8 @@ fn files_after(
         dirty: false,
         target: "here".to_owned(),
     };
-    let job = RunJob {
-        prepared: prepared.into(),
-        quantities: entry.quantities,
-        program: &program,
-        is_open_ended: false,
-    };
+    let quantities = prepared.quantities(entry);
+    let job = RunJob { prepared: prepared.into(), quantities, program: &program, is_open_ended: false };
     let is_stopped = AtomicBool::new(false);
     let progress = |done, _| is_stopped.store(stop == Some(done), Ordering::Relaxed);
     run(job, folder, existing, &is_stopped, progress, |_| {}).unwrap();

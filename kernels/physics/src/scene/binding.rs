@@ -1,7 +1,7 @@
 //! Binding of a section's fields to its keys, one function for reading and writing.
 
 use super::key_set::{KeySet, SECTIONS};
-use super::keys::{Fallback, Key, KeyValue};
+use super::keys::{Fallback, Key, KeyValue, KeyValueKind, TableRow};
 use super::shared_frame::SharedFrame;
 use super::target::MeanTarget;
 use super::values::SceneValues;
@@ -65,6 +65,7 @@ define_bindings! {
     rows, rows_if_any, Rows, Vec<Vec<f64>>;
     target, target_if_any, Target, MeanTarget;
     words, words_if_any, Words, Vec<String>;
+    tables, tables_if_any, Tables, Vec<TableRow>;
 }
 
 impl dyn Binding + '_ {
@@ -157,7 +158,7 @@ impl Write {
         let sections = std::iter::once("").chain(SECTIONS.iter().map(|(name, _)| *name));
         for section in sections {
             let mut lines = String::new();
-            for key in keys.section(section) {
+            for key in keys.section(section).filter(|key| !matches!(key.kind, KeyValueKind::Tables(_))) {
                 let Some((_, value)) = self.0.iter().find(|(written, _)| written.id() == key.id()) else {
                     continue;
                 };
@@ -169,6 +170,18 @@ impl Write {
                     text.push_str(&format!("\n[{section}]\n"));
                 }
                 text.push_str(&lines);
+            }
+        }
+        // Tables of a list end the text: whatever follows them belongs to the last one.
+        for (key, value) in &self.0 {
+            let (KeyValueKind::Tables(fields), KeyValue::Tables(rows)) = (key.kind, value) else { continue };
+            for row in rows {
+                text.push_str(&format!("\n[[{}]]\n", key.name));
+                for (name, value) in row {
+                    let unit = fields.iter().find(|field| field.name == *name).map_or("", |field| field.unit);
+                    let unit = if unit.is_empty() { String::new() } else { format!(" # {unit}") };
+                    text.push_str(&format!("{name} = {}{unit}\n", value.to_toml()));
+                }
             }
         }
         text

@@ -20,7 +20,7 @@ define_keys! {
     SIDES = "domain" "sides", Pair(Positive), "length", Otherwise("the box of `file`, or a box for `count` at `packing_fraction`"), SIDED,
         "Sides of the box. Without them it is that of the start file, or the one in which `count` grains have `packing_fraction`: a square, a pipe of `clear_width`, or a box of `fill_height`. A hexagonal start always computes them.";
     PERIODIC = "domain" "periodic", Switches, "", Is("[true, true]"), ALWAYS,
-        "Periodicity of the sides along x and y. A disc that leaves through a closed side stops the run.";
+        "Periodicity of the sides along x and y. A disc that leaves through a closed side stops the run, unless the side is a wall.";
     GRAVITY = "domain" "gravity", Pair(Finite), "length/time²", Is("[0.0, 0.0]"), ALWAYS,
         "Acceleration of gravity.";
 }

@@ -33,7 +33,12 @@ pub enum KeyValue {
     Target(MeanTarget),
     /// Some of the words to choose from.
     Words(Vec<String>),
+    /// List of tables, each with the values of some of its keys.
+    Tables(Vec<TableRow>),
 }
+
+/// Values of a table of a list, each with the name of its key, in the order of the keys.
+pub type TableRow = Vec<(&'static str, KeyValue)>;
 
 impl KeyValue {
     /// Text in TOML; numbers have the shortest form that reads back to the same bits.
@@ -55,9 +60,17 @@ impl KeyValue {
             KeyValue::Rows(rows) => list(
                 rows.iter().map(|row| list(row.iter().map(|value| format!("{value:?}")).collect())).collect(),
             ),
+            KeyValue::Tables(rows) => list(rows.iter().map(inline_table).collect()),
             KeyValue::Numbers(values) => list(values.iter().map(|value| format!("{value:?}")).collect()),
         }
     }
+}
+
+/// Table in one line.
+fn inline_table(row: &TableRow) -> String {
+    let entries: Vec<String> =
+        row.iter().map(|(name, value)| format!("{name} = {}", value.to_toml())).collect();
+    format!("{{ {} }}", entries.join(", "))
 }
 
 /// Range of a number; every number must be finite.
@@ -132,6 +145,8 @@ pub enum KeyValueKind {
     Target,
     /// `["…", …]`, each one of some words.
     Words(&'static [&'static str]),
+    /// `[[name]]`, any number of tables with these keys.
+    Tables(&'static [&'static Key]),
 }
 
 /// Reason why a value cannot be read, with its location in the text.
@@ -174,6 +189,10 @@ impl KeyValueKind {
             KeyValueKind::Words(words) => {
                 format!("a list of {}", joined(words.iter().map(|word| format!("\"{word}\"")).collect()))
             }
+            KeyValueKind::Tables(keys) => {
+                let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
+                format!("tables with the keys {}", names.join(", "))
+            }
             KeyValueKind::Pairs => "[[x, y], …], finite numbers".to_owned(),
             KeyValueKind::Rows(numbers) => format!("[[…], …], each of {numbers} finite numbers"),
             KeyValueKind::Numbers(bounds) => format!("[a, b, …], numbers, {}", bounds.words()),
@@ -211,6 +230,7 @@ impl KeyValueKind {
                 if row_of.len() == numbers { Ok(row_of) } else { wrong_type(row) }
             })?),
             KeyValueKind::Numbers(bounds) => KeyValue::Numbers(list(value, |item| number(item, bounds))?),
+            KeyValueKind::Tables(keys) => KeyValue::Tables(list(value, |item| table(item, keys))?),
         })
     }
 }
@@ -343,6 +363,43 @@ fn pair<T>(
 ) -> FaultsOr<[T; 2]> {
     let items = list(value, item)?;
     items.try_into().or_else(|_| wrong_type(value))
+}
+
+/// Reads a table of a list.
+fn table(value: &Spanned<DeValue<'_>>, keys: &'static [&'static Key]) -> FaultsOr<TableRow> {
+    let Some(entries) = value.get_ref().as_table() else { return wrong_type(value) };
+    let mut faults = vec![];
+    for (name, entry) in entries {
+        if !keys.iter().any(|key| key.name == name.get_ref()) {
+            let found = format!("a table with the unknown key `{}`", quoted(name.get_ref()));
+            let nearest = nearest(name.get_ref(), keys.iter().map(|key| key.name));
+            let fault = ValueFault::new(entry, MistakeKind::Unknown, found);
+            faults.push(ValueFault { nearest, span: name.span(), ..fault });
+        }
+    }
+    let mut row = vec![];
+    for key in keys {
+        match entries.get(key.name) {
+            Some(entry) => match key.kind.read(entry) {
+                Ok(read) => row.push((key.name, read)),
+                Err(more) => faults.extend(more.into_iter().map(|fault| {
+                    let found = format!(
+                        "a table whose `{}` is {}; {} is expected",
+                        key.name,
+                        fault.found,
+                        key.kind.words()
+                    );
+                    ValueFault { found, reason: MistakeKind::Type, ..fault }
+                })),
+            },
+            None if key.fallback == Fallback::Required => {
+                let found = format!("a table without `{}`", key.name);
+                faults.push(ValueFault::new(value, MistakeKind::Missing, found));
+            }
+            None => {}
+        }
+    }
+    if faults.is_empty() { Ok(row) } else { Err(faults) }
 }
 
 fn target(value: &Spanned<DeValue<'_>>) -> FaultsOr<MeanTarget> {

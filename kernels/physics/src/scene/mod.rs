@@ -49,7 +49,7 @@ pub use general::{
 pub(crate) use general::{STRUCTURE, STRUCTURE_RANGE, SUMMED, TARGET};
 pub use key_set::{ExclusiveKeys, KeySet, SECTIONS};
 pub(crate) use keys::Use;
-pub use keys::{Fallback, Key, KeyValue, KeyValueKind, NumberRange};
+pub use keys::{Fallback, Key, KeyValue, KeyValueKind, NumberRange, TableRow};
 pub(crate) use machine::{
     ARITHMETIC, INSTRUCTION_SET, INSTRUCTIONS, bind_arithmetic, bind_execution, bind_instructions,
     execution_name,

@@ -122,8 +122,9 @@ pub(super) fn fill(
 ) -> Result<Vec<Particle>, SceneError> {
     let GeneratedDiscs { radius, spread, cut, second, mass, seed, .. } = *grains;
     let cut = if spread > 0.0 { cut } else { 0.0 };
+    let (domain, barriers) = (*domain, stated.barriers);
     let filling =
-        RandomPlacement { domain: *domain, room, obstacles, count, radius, spread, cut, second, mass, seed };
+        RandomPlacement { domain, room, obstacles, barriers, count, radius, spread, cut, second, mass, seed };
     let mut discs = place_randomly(&filling).map_err(|jammed| {
         let error = stated.spot(&GENERATE).error(MistakeKind::Placement, jammed.to_string());
         error.advising("lower count or packing_fraction, or enlarge the box")

@@ -32,6 +32,8 @@ pub struct StatedStart<'s> {
     pub start: &'s DiscStart,
     /// Motion of wall discs.
     pub walls: WallMotion,
+    /// Segments that placed discs must not cut (length).
+    pub barriers: &'s [[[f64; 2]; 2]],
     /// Axes along which the method conserves momentum.
     pub conserved: [bool; 2],
     /// Function that lets grains grow.

@@ -76,7 +76,7 @@ impl<P: Element, L: Law<2>> Forces<P, L> {
 
 /// Destination array of a sum.
 #[inline]
-const fn sum_array(sum: ParticleSum) -> Array {
+pub(crate) const fn sum_array(sum: ParticleSum) -> Array {
     match sum {
         ParticleSum::Force(axis) => [Array::Fx, Array::Fy][axis as usize],
         ParticleSum::Torque => Array::Torque,

@@ -50,6 +50,7 @@ pub(super) fn prepare(values: SceneValues) -> Result<Prepared, SceneErrors> {
     let stated = StatedStart {
         values: &values,
         domain: &scene.domain,
+        barriers: &[],
         conserved: scene.domain.periodic.map(|is_periodic| is_periodic && scene.law.thermal.is_none()),
         start: &scene.start,
         walls: WallMotion::Fixed,

@@ -107,6 +107,7 @@ mod tests {
             domain,
             room: [[0.0; 2], [x, y]],
             obstacles: &[],
+            barriers: &[],
             count,
             radius: scale * mean,
             spread,

@@ -54,6 +54,7 @@ pub(super) fn check_langevin_scene(values: SceneValues) -> Result<CheckedLangevi
     let stated = StatedStart {
         values: &values,
         domain: &scene.domain,
+        barriers: &[],
         conserved: [scene.bath.friction == 0.0; 2],
         start: &scene.start,
         walls: WallMotion::Fixed,

@@ -1,16 +1,20 @@
 //! Arrays of a step.
 
+use super::lattice_walls::LatticeWalls;
 use super::options::ProgramVersion;
 use super::programs::scales;
 use super::{DiscUniformity, GranularModel};
+use crate::method::pairwise::WallTouch;
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::integrator::gear::STATE;
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
+use stripmine_kernels::law::granular::EqualDiscs;
 use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_kernels::sweep::walls::TouchingDisc;
 
 /// Vector lengths of a step for a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,6 +28,7 @@ pub struct Lengths {
     swept: Range<usize>,
     padded: usize,
     halo: usize,
+    walls: Vec<Range<usize>>,
 }
 
 impl Lengths {
@@ -37,6 +42,15 @@ impl Lengths {
             swept: shape.swept(),
             padded: shape.padded(),
             halo: shape.images().len(),
+            walls: LatticeWalls::<f64>::new(model, 0.0).runs(),
+        }
+    }
+
+    /// Element ranges of programs of this length, run one after the other: several for walls only.
+    pub(crate) fn ranges(&self, length: VectorLength) -> Vec<Range<usize>> {
+        match length {
+            VectorLength::WallElements => self.walls.clone(),
+            _ => vec![self.range(length)],
         }
     }
 
@@ -48,6 +62,7 @@ impl Lengths {
             VectorLength::SweptCells => self.swept.clone(),
             VectorLength::PaddedCells => 0..self.padded,
             VectorLength::HaloCells => 0..self.halo,
+            VectorLength::WallElements => 0..self.walls.last().map_or(0, |run| run.end),
             // Known only when the lists are traversed.
             VectorLength::Candidates | VectorLength::Pairs => 0..0,
         }
@@ -71,6 +86,7 @@ pub struct ProgramArrays<S, P> {
     index: AlignedColumn<u32>,
     halo_cell: AlignedColumn<u32>,
     halo_source: AlignedColumn<u32>,
+    walls: LatticeWalls<P>,
 }
 
 /// Columns of the machine's arrays.
@@ -245,8 +261,37 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
             index: AlignedColumn::filled(Array::Index as usize, 0, padded),
             halo_cell: aligned_array(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
             halo_source: aligned_array(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
+            walls: LatticeWalls::new(model, 0.0),
             lengths,
         }
+    }
+
+    /// Moves the plane walls to a time.
+    pub(super) fn move_plane_walls(&mut self, model: &GranularModel, time: f64) {
+        self.walls = LatticeWalls::new(model, time);
+        self.lengths.walls = self.walls.runs();
+    }
+
+    /// Lists the contacts of the discs in lattice vectors with plane walls.
+    pub(super) fn wall_touches(&self, model: &GranularModel) -> Vec<WallTouch> {
+        let column = |array: Array| self.lattice(array).unwrap_or(&[]);
+        let at = |array: Array, position: usize| column(array).get(position).copied();
+        let equal = match model.discs {
+            DiscUniformity::Equal { disc, .. } => Some(disc),
+            DiscUniformity::Varying => None,
+        };
+        self.walls.touches(model, |position| {
+            let number = (*self.index.get(position)? as usize).checked_sub(1)?;
+            let equal = |of: fn(EqualDiscs) -> f64| equal.map(|disc| P::from_f64(of(disc)));
+            let disc = TouchingDisc {
+                position: [at(Array::X, position)?, at(Array::Y, position)?],
+                velocity: [at(Array::Vx, position)?, at(Array::Vy, position)?],
+                omega: at(Array::Omega, position).unwrap_or_default(),
+                radius: equal(|disc| disc.radius).or_else(|| at(Array::Radius, position))?,
+                inverse_mass: equal(|disc| disc.inverse_mass).or_else(|| at(Array::InverseMass, position))?,
+            };
+            (number < self.lengths.grains).then_some((number, disc))
+        })
     }
 
     /// Vector lengths.
@@ -256,13 +301,24 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
 
     /// Binds all arrays to their slots; also returns the vector lengths.
     pub fn memory(&mut self) -> (Memory<'_>, &Lengths) {
-        let ProgramArrays { lengths, state, lattice, constant, cell, index, halo_cell, halo_source, .. } =
-            self;
+        let ProgramArrays {
+            lengths,
+            state,
+            lattice,
+            constant,
+            cell,
+            index,
+            halo_cell,
+            halo_source,
+            walls,
+            ..
+        } = self;
         let mut memory = bound(state, lattice, constant);
         memory.bind_write(Slot::new(Array::DiscCell), cell);
         memory.bind_write(Slot::new(Array::Index), index);
         memory.bind_read(Slot::new(Array::HaloCell), halo_cell);
         memory.bind_read(Slot::new(Array::HaloSource), halo_source);
+        walls.bind(&mut memory);
         (memory, lengths)
     }
 

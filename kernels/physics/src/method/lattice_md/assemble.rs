@@ -31,7 +31,9 @@ pub fn model(checked: &CheckedGranularScene) -> GranularModel {
         mask: geometry.mask.clone(),
         coordinates: scene.machine.coordinates,
         contact: scene.law.contact,
-        friction: scene.law.has_friction() || is_printed,
+        walls: checked.walls.clone(),
+        lines: scene.plane.lines.clone(),
+        friction: scene.has_friction() || is_printed,
         discs,
         inertia_factor: factor,
         scheme: scene.integrator.scheme,
@@ -98,6 +100,11 @@ fn started_grains(
     if !scene.machine.is_fast() {
         reject_several_ranks(
             "BP93's programs act on whole arrays; only machine.engine = \"fast\" has bands",
+        )?;
+    }
+    if !model.walls.is_empty() || !model.lines.is_empty() {
+        reject_several_ranks(
+            "plane walls, closed sides included, and lines that count grains are those of one rank",
         )?;
     }
     let contacts = contacts(checked);

@@ -21,6 +21,7 @@ pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
         Fact::new("units", scene.units.as_str(), "units", scene.units.as_str()),
         Fact::new("grains", grains, "grains", grains.to_string()),
         Fact::new("wall_discs", walls, "wall discs", walls.to_string()),
+        Fact::data("plane_walls", checked.walls.all().len()),
         Fact::data("discs_alike", *alike),
         Fact::new("radii", json!(geometry.radii), "radii", range(geometry.radii, &scene.units)),
         Fact::data("origin", json!(domain.corner())),
@@ -29,6 +30,11 @@ pub(super) fn facts(checked: &CheckedGranularScene) -> Vec<Fact> {
         Fact::data("search", scene.search.by.word()),
         Fact::data("engine", scene.machine.engine.word()),
     ];
+    if !checked.walls.is_empty() {
+        let (user, all) = (scene.plane.list.len(), checked.walls.all().len());
+        let sides = if all > user { format!(", {} closed sides", all - user) } else { String::new() };
+        facts.push(Fact::words("plane walls", format!("{user} segments{sides}")));
+    }
     if scene.needs_lattice() {
         facts.extend(lattice_facts(checked));
     }

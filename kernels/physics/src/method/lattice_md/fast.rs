@@ -4,15 +4,18 @@
 
 use super::GranularModel;
 use super::programs::{with_law, with_scheme};
+use super::wall_law::with_wall_law;
 use super::walls::walls_at;
 use crate::grid::sectors_of;
 use crate::method::PhysicsFailure;
 use crate::method::pairwise::search::{LatticeSearch, ListSearch, OnConflict, PairSearch, SectorSearch};
 use crate::method::pairwise::{
-    self, Dynamics, LawTask, PairSystem, PrescribedMotion, SchemeTask, SortSchedule, SteppingDiscs,
+    self, Dynamics, LawTask, PairSystem, PlaneWalls, PrescribedMotion, SchemeTask, SortSchedule,
+    SteppingDiscs,
 };
 use crate::particles::Particles;
 use crate::scene::WallMotion;
+use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::Storage;
@@ -86,6 +89,14 @@ impl Dynamics for GranularDynamics {
 
     fn prescribed(&self, time: f64) -> Option<PrescribedMotion> {
         (self.walls != WallMotion::Fixed).then(|| walls_at(self.walls, time))
+    }
+
+    fn walls(&self) -> Option<&Arc<PlaneWalls>> {
+        Some(&self.model.walls).filter(|walls| !walls.is_empty())
+    }
+
+    fn with_wall_law<W: LawTask>(&self, work: W) -> Option<W::Output> {
+        Some(with_wall_law(self.model.wall_law(), work))
     }
 }
 

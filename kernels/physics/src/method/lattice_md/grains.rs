@@ -3,12 +3,16 @@
 use super::balance::GravityPath;
 use super::contacts::{ContactSearch, ProgramExecution};
 use super::fast;
+use super::flux::Flux;
 use super::simulation::LatticeMd;
 use super::step_checks::{check_contact_depths, check_step_lengths};
-use super::walls::wall_power;
+use super::wall_checks::WallTouches;
+use super::wall_law::with_wall_law;
+use super::wall_sums::{WallSums, forces_and_torques};
+use super::walls::{plane_wall_power, wall_power};
 use super::{GranularModel, GranularTotals, Lengths, Timings};
 use crate::io::checkpoint::CheckpointColumn;
-use crate::method::pairwise::SteppingDiscs;
+use crate::method::pairwise::{SteppingDiscs, WallTouch};
 use crate::method::stepped::SteppedState;
 use crate::method::{Elapsed, PerParticle, PhysicsFailure, SteeringError};
 use crate::observe::{ObservationSums, SceneProperties};
@@ -22,6 +26,8 @@ pub struct SteppedGrains {
     model: GranularModel,
     walls: WallMotion,
     totals: GranularTotals,
+    wall_sums: WallSums,
+    flux: Flux,
     /// Pairs visited in the last step.
     met: u64,
 }
@@ -60,10 +66,13 @@ impl SteppedGrains {
             (_, Precision::F32) => programs::<f32, f32>((&model, contacts, machine), walls, particles),
             (_, Precision::Mixed) => programs::<f64, f32>((&model, contacts, machine), walls, particles),
         };
-        let mut grains = SteppedGrains { stepping, model, walls, totals: GranularTotals::default(), met: 0 };
+        let (totals, wall_sums) = (GranularTotals::default(), WallSums::default());
+        let flux = Flux::new(&model.lines, stepping.as_ref());
+        let mut grains = SteppedGrains { stepping, model, walls, totals, wall_sums, flux, met: 0 };
         let power = grains.compute_forces()?;
         grains.stepping.finish()?;
         grains.totals = GranularTotals::starting_with(power, grains.wall_power());
+        grains.wall_sums = WallSums::starting_with(&grains.model.walls, grains.stepping.wall_touches());
         Ok(grains)
     }
 
@@ -76,8 +85,13 @@ impl SteppedGrains {
         check_step_lengths(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
         self.totals.shared_cells += self.stepping.shared_cells() as u64;
         let power = self.compute_forces()?;
-        self.totals.add_work(self.model.dt, power, self.wall_power());
-        self.stepping.finish()
+        let wall_power = self.wall_power();
+        self.totals.add_work(self.model.dt, power, wall_power);
+        self.wall_sums.add(self.model.dt, self.stepping.wall_touches());
+        self.stepping.finish()?;
+        let discs = self.stepping.as_ref();
+        self.flux.add(discs, discs.start().grains(), &self.model.domain());
+        Ok(())
     }
 
     /// Restarts the integrator at the end of the step, with the velocities and angular velocities of all discs and, if given, another gravity
@@ -116,14 +130,30 @@ impl SteppedGrains {
     fn compute_forces(&mut self) -> Result<f64, PhysicsFailure> {
         let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
-        check_contact_depths(self.stepping.as_ref(), &met.deep, self.model.watch, &mut self.totals)?;
-        Ok(met.dissipated)
+        let touches = self.stepping.wall_touches();
+        check_contact_depths(
+            self.stepping.as_ref(),
+            (&met.deep, touches),
+            self.model.watch,
+            &mut self.totals,
+        )?;
+        let at_walls: f64 = match self.model.counts_dissipation() {
+            true => touches.iter().map(|touch| touch.power).sum(),
+            false => 0.0,
+        };
+        Ok(met.dissipated + at_walls)
     }
 
     /// Power of moving walls (energy/time).
     fn wall_power(&self) -> f64 {
-        let grains = self.stepping.start().grain_count();
-        wall_power(&self.model, self.walls, self.time(), grains, || self.forces())
+        let (grains, time) = (self.stepping.start().grain_count(), self.time());
+        let touches = self.stepping.wall_touches();
+        let of_discs = wall_power(&self.model, self.walls, time, touches, || {
+            let mut forces = self.forces();
+            forces.truncate(grains);
+            forces
+        });
+        of_discs + plane_wall_power(&self.model, time, touches)
     }
 
     /// Steps done since the start of the scene.
@@ -156,7 +186,49 @@ impl SteppedGrains {
     /// Sums over the discs and their contacts now, with the work of gravity since the start. The order of summation depends on the scene alone.
     pub fn sums(&self, scenery: &SceneProperties, path: &GravityPath) -> ObservationSums {
         let crossings = self.crossings();
-        self.stepping.sums(scenery, &|number, grain, position| path.work(number, grain, position, crossings))
+        let mut sums = self
+            .stepping
+            .sums(scenery, &|number, grain, position| path.work(number, grain, position, crossings));
+        for (touch, _) in self.touches_now() {
+            sums.contacts.add(touch.energy, touch.penetration);
+        }
+        sums
+    }
+
+    /// Contacts of grains with plane walls at the end of the step, each with its point.
+    fn touches_now(&self) -> Vec<(WallTouch, [f64; 2])> {
+        let walls = &self.model.walls;
+        if walls.is_empty() {
+            return vec![];
+        }
+        let (particles, time) = (self.stepping.unwrapped(), self.time());
+        let touches = WallTouches { walls, particles: &particles, domain: self.model.domain(), time };
+        with_wall_law(self.model.wall_law(), touches)
+    }
+
+    /// Values of each plane wall and each line in the order of [`names_of`](crate::method::names_of): impulses since the start, forces and torque
+    /// now; number and mass since the start.
+    pub(super) fn own_values(&self) -> Vec<f64> {
+        let now = forces_and_torques(&self.model, &self.touches_now(), self.time());
+        let each = self.wall_sums.impulses.iter().zip(now);
+        let of_walls = each.flat_map(|(impulse, now)| impulse.iter().copied().chain(now));
+        of_walls.chain(self.flux.sums.iter().flatten().copied()).collect()
+    }
+
+    /// Sums of the plane walls and lines by name, for a checkpoint.
+    pub(super) fn own_entries(&self) -> Vec<(String, f64)> {
+        let mut entries = self.wall_sums.entries(&self.model.walls);
+        entries.extend(self.flux.entries());
+        entries
+    }
+
+    /// Restores the sums of the plane walls and lines, found by name, once the discs are restored.
+    ///
+    /// # Errors
+    /// As `find`.
+    pub(super) fn restore_own(&mut self, find: impl Fn(&str) -> Result<f64, String>) -> Result<(), String> {
+        self.wall_sums = WallSums::from_entries(&self.model.walls, &find)?;
+        self.flux.restore(self.stepping.as_ref(), find)
     }
 
     /// Force along x and y and torque on every particle in the last step.

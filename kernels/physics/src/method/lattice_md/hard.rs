@@ -1,6 +1,7 @@
 //! Hard-disc twin of a scene of soft discs: the limit of stiff contacts, for scenes that hard discs can represent.
 
 use super::keys::{COHESIONLESS, FRICTION, LAW, NORMAL_DAMPING, SHEAR_DAMPING, STIFFNESS};
+use super::wall_keys::WALLS;
 use crate::method::hard_disks::keys::RESTITUTION;
 use crate::method::{Prepared, TranslatedScene, Until};
 use crate::observe::{AxisMotion, conserved_axes, temperature};
@@ -23,7 +24,8 @@ pub(super) fn hard(values: &SceneValues, prepared: &Prepared, quantity: &str) ->
     let particles = prepared.particles();
     let (discs, grains) = (particles.grain_count(), particles.grains());
     let is_zero = |key: &Key| values.number(key) == Some(0.0);
-    let is_free = discs == particles.len() && prepared.domain.periodic() == [true; 2];
+    let has_planes = values.is_given(&WALLS);
+    let is_free = discs == particles.len() && prepared.domain.periodic() == [true; 2] && !has_planes;
     let is_smooth = is_zero(&FRICTION) && is_zero(&SHEAR_DAMPING);
     if !is_free || !is_smooth || values.value(&COHESIONLESS) != Some(KeyValue::Switch(true)) {
         return None;

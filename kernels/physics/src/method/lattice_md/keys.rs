@@ -3,6 +3,7 @@
 use super::model::OnLongStep;
 use super::neighbor_list::Rebuild;
 use super::options::{EngineChoice, Inertia, IntegratorKind, ProgramVersion, SearchKind};
+use super::wall_keys::WALL_KEYS;
 use crate::method::pairwise::search::OnConflict;
 use crate::scene::Fallback::{Is, Otherwise, Required};
 use crate::scene::KeyValueKind::{Choice, Number, OneOf, Switch};
@@ -88,6 +89,7 @@ pub(super) static VOCABULARY: Vocabulary = Vocabulary {
             PLANAR_DOMAIN,
             DISCS,
             OWN,
+            WALL_KEYS,
             STEP,
             ARITHMETIC,
             INSTRUCTIONS,

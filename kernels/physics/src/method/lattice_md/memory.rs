@@ -15,8 +15,10 @@ use crate::particles::Particle;
 use crate::scene::Precision;
 use std::collections::BTreeMap;
 use stripmine_kernels::isa::aligned_column::column_memory as row;
+use stripmine_kernels::ledger::VectorLength;
 use stripmine_kernels::sweep::fast::lattice::SPARSE;
 use stripmine_kernels::sweep::lattice::Coordinates;
+use stripmine_kernels::sweep::walls::ELEMENT_NUMBERS;
 
 /// Bytes of the programs themselves, and of the large page that their short arrays share.
 const SHARED: f64 = 3.5e6;
@@ -27,7 +29,7 @@ const DISC: f64 = size_of::<Particle>() as f64;
 pub fn foreseen(checked: &CheckedGranularScene) -> MemoryForecast {
     let of = GranularSizes::of(checked);
     let from = if of.model.gravity == [0.0; 2] { 0.0 } else { 16.0 * of.grains };
-    let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed();
+    let kept = PROGRAM + 2.0 * DISC * of.discs + from + of.followed() + of.walls(checked);
     let near = NeighbourSearch::bytes(checked.particles.len()) as f64;
     let (mut cells, mut rows) = (0.0, [0.0; 2]);
     let ([engine, columns], observed) = match contacts(checked) {
@@ -100,6 +102,18 @@ impl GranularSizes {
             state,
             force,
         }
+    }
+
+    /// Bytes of the elements of plane walls with their index of cells, and of the positions that lines compare.
+    fn walls(&self, checked: &CheckedGranularScene) -> f64 {
+        let lines = if self.model.lines.is_empty() { 0.0 } else { 32.0 * self.grains };
+        if self.model.walls.is_empty() {
+            return lines;
+        }
+        let count = checked.particles.len();
+        let elements = Lengths::new(&self.model, count, count).range(VectorLength::WallElements).len();
+        let element = ELEMENT_NUMBERS as f64 * self.force + 16.0;
+        lines + 4.0 * self.model.shape.cells() as f64 + element * elements as f64
     }
 
     fn freedoms(&self) -> f64 {

@@ -2,9 +2,11 @@
 
 use super::options::ProgramVersion;
 use crate::domain::Domain;
+use crate::method::pairwise::PlaneWalls;
 use crate::observe::SceneProperties;
 use crate::particles::longest_step;
 use crate::words::define_words;
+use std::sync::Arc;
 use stripmine_kernels::integrator::Inertia;
 use stripmine_kernels::integrator::gear::Acceleration;
 use stripmine_kernels::isa::Storage;
@@ -159,6 +161,10 @@ pub struct GranularModel {
     pub coordinates: Coordinates,
     /// The contact law's parameters.
     pub contact: Contact,
+    /// Plane walls.
+    pub walls: Arc<PlaneWalls>,
+    /// Ends of the lines through which grains are counted (length).
+    pub lines: Vec<[[f64; 2]; 2]>,
     /// True with friction, and with it rotation, torque and spin.
     pub friction: bool,
     /// Equal or different discs.
@@ -189,10 +195,17 @@ impl GranularModel {
         }
     }
 
+    /// Contact law at plane walls, whose coefficients may be others, and whether it has friction.
+    pub(super) fn wall_law(&self) -> (Contact, bool) {
+        (self.contact, self.friction)
+    }
+
     /// Dependence of accelerations on velocities: with damping they depend on them.
     pub fn acceleration(&self) -> Acceleration {
         let Contact { normal_damping, shear_damping, .. } = self.contact;
-        let damped = normal_damping != 0.0 || (self.friction && shear_damping != 0.0);
+        let of_walls = self.walls.all().iter().map(|wall| [wall.normal_damping, wall.shear_damping]);
+        let mut dampings = of_walls.chain([[normal_damping, shear_damping]]);
+        let damped = dampings.any(|[normal, shear]| normal != 0.0 || (self.friction && shear != 0.0));
         if damped { Acceleration::OfVelocities } else { Acceleration::OfPositions }
     }
 

@@ -10,7 +10,7 @@ use super::{Lengths, ProgramArrays, StepProgram, memory, model, programs, runnin
 use crate::method::pairwise::PairForcesTask;
 use crate::method::{
     BoundPrograms, PhysicsFailure, Prepared, ProgramCall, Schedule, Simulation, StartPurpose, Startable,
-    VectorProgram,
+    VectorProgram, names_of,
 };
 use crate::particles::Particles;
 use crate::scene::{Precision, SceneErrors, WallMotion};
@@ -75,7 +75,7 @@ impl CheckedGranularScene {
             ("integrator", json!(scene.integrator.scheme.name())),
             ("execution", json!(scene.machine.execution_name())),
             ("text", json!((!scene.machine.is_fast()).then(|| scene.machine.text.word()))),
-            ("friction", json!(scene.law.has_friction())),
+            ("friction", json!(scene.has_friction())),
             ("cell_edge", json!(cell_edge)),
             ("instruction_set", json!(scene.machine.instructions().name())),
         ];
@@ -86,6 +86,16 @@ impl CheckedGranularScene {
 impl Startable for CheckedGranularScene {
     fn particles(&self) -> &Particles {
         &self.particles
+    }
+
+    fn has_segments(&self) -> bool {
+        !self.scene.plane.list.is_empty()
+    }
+
+    fn own_quantities(&self) -> Vec<String> {
+        let of_walls = self.walls.all().iter().flat_map(|wall| names_of("wall", &wall.label));
+        let lines = 1..=self.scene.plane.lines.len();
+        of_walls.chain(lines.flat_map(|line| names_of("flux", &line.to_string()))).collect()
     }
 
     fn work(&self) -> f64 {
@@ -128,10 +138,13 @@ impl Startable for CheckedGranularScene {
         let (memory, lengths) = arrays.memory();
         let calls: Vec<ProgramCall<'_>> = programs
             .iter()
-            .map(|step| ProgramCall {
-                part: step.part.name(),
-                program: step.program.as_ref(),
-                range: lengths.range(step.length),
+            .flat_map(|step| {
+                let call = move |range| ProgramCall {
+                    part: step.part.name(),
+                    program: step.program.as_ref(),
+                    range,
+                };
+                lengths.ranges(step.length).into_iter().map(call)
             })
             .collect();
         task(&calls, &memory);
@@ -168,7 +181,10 @@ impl Startable for CheckedGranularScene {
     fn period(&self) -> Option<f64> {
         match self.scene.walls {
             WallMotion::Oscillating { frequency, .. } => Some(1.0 / frequency),
-            WallMotion::Fixed => None,
+            WallMotion::Fixed => {
+                let frequencies = self.scene.plane.list.iter().map(|wall| wall.motion.frequency);
+                frequencies.filter(|&frequency| frequency > 0.0).reduce(f64::min).map(|slowest| 1.0 / slowest)
+            }
         }
     }
 }

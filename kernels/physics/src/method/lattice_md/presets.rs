@@ -18,6 +18,8 @@ define_presets![
     "two-discs",
     "shaken-box",
     "wide-sizes",
+    "hopper",
+    "shear-cell",
     "bench",
     "pipe-small-printed",
     "dense-gas-printed"

@@ -1,6 +1,7 @@
 //! Programs of a step, compiled for the parts that a model needs.
 
 use super::options::ProgramVersion;
+use super::wall_law::with_wall_law;
 use super::{DiscUniformity, GearValues, GranularModel, GranularScheme, Lengths};
 use crate::method::pairwise::{CarriedQuery, LawTask, SchemeTask};
 use crate::scene;
@@ -18,6 +19,7 @@ use stripmine_kernels::printed;
 use stripmine_kernels::sweep::lattice::cells::{CheckIndex, ClearIndex, EnterDiscs, IndexImages};
 use stripmine_kernels::sweep::lattice::forces::Forces;
 use stripmine_kernels::sweep::lattice::vectors::SpreadToLattice;
+use stripmine_kernels::sweep::walls::WallForces;
 use stripmine_kernels::{Execution, InstructionSet, Program, Runnable};
 
 macro_rules! define_parts {
@@ -52,6 +54,7 @@ define_parts! {
     (Halo, "halo", "images in the halo, the check that no disc was lost: printed programs only, as the paper has no equation for it"),
     (Lattice, "lattice", "the discs' quantities as lattice vectors"),
     (Forces, "forces", "the contact law at every offset of the mask"),
+    (Walls, "walls", "the contact law at the plane walls: scenes with such walls only"),
     (Corrector, "corrector", "forces gathered back, and Gear's correction of all derivatives"),
 }
 
@@ -170,8 +173,15 @@ fn our_programs<S: Precision, P: Precision>(model: &GranularModel) -> Vec<StepPr
     programs.extend([
         step(Part::Lattice, VectorLength::PaddedCells, Box::new(Program::new(spread))),
         step(Part::Forces, VectorLength::SweptCells, forces),
-        step(Part::Corrector, VectorLength::Grains, corrector::<S, P>(model)),
     ]);
+    if !model.walls.is_empty() {
+        programs.push(step(
+            Part::Walls,
+            VectorLength::WallElements,
+            with_wall_law(model.wall_law(), WallSweep::<P>(model, PhantomData)),
+        ));
+    }
+    programs.push(step(Part::Corrector, VectorLength::Grains, corrector::<S, P>(model)));
     programs
 }
 
@@ -281,6 +291,21 @@ impl<P: Precision> LawTask for LatticeSweep<'_, P> {
     }
 }
 
+/// Program of the plane walls for a law.
+struct WallSweep<'m, P>(&'m GranularModel, PhantomData<P>);
+
+impl<P: Precision> LawTask for WallSweep<'_, P> {
+    type Output = Box<dyn Runnable>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
+        let equal = match self.0.discs {
+            DiscUniformity::Equal { disc, .. } => Some(disc),
+            DiscUniformity::Varying => None,
+        };
+        Box::new(Program::new(WallForces::<P, L>::new(law, equal)))
+    }
+}
+
 /// Calls the instance of `$function::<S, P, VALUES, FREEDOMS>` that a model needs.
 macro_rules! for_scheme {
     ($model:expr, $values:expr, $function:ident) => {
@@ -345,7 +370,9 @@ pub fn execute(
     set: InstructionSet,
 ) -> Result<(), ProgramError> {
     for step in programs.iter().filter(|step| parts.contains(&step.part)) {
-        step.program.run(memory, lengths.range(step.length), execution, set)?;
+        for range in lengths.ranges(step.length) {
+            step.program.run(memory, range, execution, set)?;
+        }
     }
     Ok(())
 }

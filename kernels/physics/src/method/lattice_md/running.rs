@@ -178,6 +178,10 @@ impl Stepwise for GranularRun {
         work(run.seen())
     }
 
+    fn own_values(run: &Stepped<Self>) -> Vec<f64> {
+        run.state.own_values()
+    }
+
     fn save_into(run: &Stepped<Self>, kept: &mut Snapshot) {
         for (name, total) in run.state.totals().entries() {
             match total {
@@ -185,6 +189,7 @@ impl Stepwise for GranularRun {
                 TotalEntry::Sum(sum) => kept.add_sum(name, sum),
             }
         }
+        run.state.own_entries().iter().for_each(|(name, sum)| kept.add_sum(name, *sum));
         kept.counters.extend(run.method.run_monitor.iter().flat_map(RunMonitor::counters));
         if run.steering.gravity.is_some() {
             run.method.work.keep_path(kept);
@@ -230,7 +235,7 @@ impl Stepwise for GranularRun {
         Ok(())
     }
 
-    fn restore(run: &mut Stepped<Self>, clock: Clock, snapshot: Snapshot) -> Result<(), String> {
+    fn restore(run: &mut Stepped<Self>, clock: Clock, mut snapshot: Snapshot) -> Result<(), String> {
         let totals = GranularTotals::from_entries(|name| match snapshot.counters.get(name)? {
             CheckpointCounter::Count(count) => Some(TotalEntry::Count(*count)),
             CheckpointCounter::Sum(sum) => Some(TotalEntry::Sum(*sum)),
@@ -246,11 +251,12 @@ impl Stepwise for GranularRun {
             let grains = run.method.discs[0];
             run.method.work.restore_path(&run.method.scenery, grains, &snapshot)?;
         }
-        let mut columns = snapshot.columns;
+        let mut columns = std::mem::take(&mut snapshot.columns);
         if run.method.counts_for_motion_alone {
             Crossings::begin_in(&mut columns, discs);
         }
-        run.state.restore(clock.steps, totals, &columns)
+        run.state.restore(clock.steps, totals, &columns)?;
+        run.state.restore_own(|name| snapshot.sum(name))
     }
 
     fn phases(run: &Stepped<Self>) -> BTreeMap<&'static str, f64> {

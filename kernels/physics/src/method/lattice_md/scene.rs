@@ -4,6 +4,7 @@ use super::keys::*;
 use super::model::{GearValues, GranularScheme, OnLongStep};
 use super::neighbor_list::Rebuild;
 pub use super::options::{EngineChoice, Inertia, IntegratorKind, ProgramVersion, SearchKind};
+use super::wall_keys::{SceneWall, SceneWalls};
 use crate::method::pairwise::search::OnConflict;
 use crate::scene::{
     Binding, DT, DiscStart, Output, Precision, RunKeys, SceneDomain, WallMotion, Write, bind_arithmetic,
@@ -26,6 +27,8 @@ pub struct GranularScene {
     pub start: DiscStart,
     /// Motion of wall discs.
     pub walls: WallMotion,
+    /// Plane walls.
+    pub plane: SceneWalls,
     /// Contact law.
     pub law: GranularLaw,
     /// Search for contacts.
@@ -230,6 +233,7 @@ impl GranularScene {
         self.domain.bind(binding);
         self.start.bind(binding);
         self.walls.bind(binding, &self.start);
+        self.plane.bind(binding);
         self.law.bind(binding);
         self.search.bind(binding);
         self.integrator.bind(binding);
@@ -252,6 +256,24 @@ impl GranularScene {
             SearchKind::Sectors => false,
             SearchKind::NeighborList => !self.machine.is_fast(),
         }
+    }
+
+    /// True with a tangential force between grains or at a plane wall, and with it rotation.
+    pub(crate) fn has_friction(&self) -> bool {
+        let at_wall = |wall: &SceneWall| {
+            let [_, damping, friction] = wall.own;
+            damping.unwrap_or(self.law.contact.shear_damping) > 0.0
+                && friction.unwrap_or(self.law.contact.friction) > 0.0
+        };
+        self.law.has_friction() || self.plane.list.iter().any(at_wall)
+    }
+
+    /// Largest normal and tangential damping of a contact, between grains or at a plane wall (1/time).
+    pub(crate) fn dampings(&self) -> [f64; 2] {
+        let law = &self.law.contact;
+        let [normal, shear] =
+            [0, 1].map(|k| self.plane.list.iter().filter_map(|wall| wall.own[k]).fold(0.0, f64::max));
+        [normal.max(law.normal_damping), shear.max(law.shear_damping)]
     }
 
     /// Simulated time (time).

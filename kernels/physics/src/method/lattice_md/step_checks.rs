@@ -1,7 +1,7 @@
 //! Checks of a step of granular discs: contacts that are too deep, discs that are too fast.
 
 use super::{ContactWatch, GranularTotals, OnLongStep};
-use crate::method::pairwise::NameableDiscs;
+use crate::method::pairwise::{NameableDiscs, WallTouch};
 use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
 use crate::number::significant;
 
@@ -36,7 +36,7 @@ pub(super) fn check_step_lengths(
 /// Counts grains in contacts that are too deep, and stops above the limit. A pair may be listed once or from both sides.
 pub(super) fn check_contact_depths(
     discs: &(impl NameableDiscs + ?Sized),
-    pairs: &[[u32; 2]],
+    (pairs, touches): (&[[u32; 2]], &[WallTouch]),
     watch: Option<ContactWatch>,
     totals: &mut GranularTotals,
 ) -> Result<(), PhysicsFailure> {
@@ -53,13 +53,25 @@ pub(super) fn check_contact_depths(
             }
         }
     }
+    let deep = touches.iter().filter(|touch| touch.penetration > watch.max_penetration);
+    grains.extend(deep.clone().map(|touch| touch.disc as usize));
+    let at_wall = deep.max_by(|a, b| a.penetration.total_cmp(&b.penetration));
     grains.sort_unstable();
     grains.dedup();
-    let Some((penetration, pair)) = deepest else { return Ok(()) };
-    totals.add_deep(discs.clock().steps, grains.len() as u64, penetration);
-    if penetration > watch.stop_penetration {
-        let pair = pair.map(|disc| discs.culprit(disc));
-        return Err(too_deep(discs.clock(), pair, penetration, watch.stop_penetration));
+    let most = deepest.map_or(0.0, |(depth, _)| depth).max(at_wall.map_or(0.0, |touch| touch.penetration));
+    if grains.is_empty() {
+        return Ok(());
+    }
+    totals.add_deep(discs.clock().steps, grains.len() as u64, most);
+    if most > watch.stop_penetration {
+        let (at, limit) = (discs.clock(), watch.stop_penetration);
+        return Err(match (at_wall, deepest) {
+            (Some(touch), _) if touch.penetration == most => {
+                too_deep_in_wall(at, discs.culprit(touch.disc as usize), touch, limit)
+            }
+            (_, Some((_, pair))) => too_deep(at, pair.map(|disc| discs.culprit(disc)), most, limit),
+            _ => return Ok(()),
+        });
     }
     Ok(())
 }
@@ -77,6 +89,18 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Phys
     );
     let failure = PhysicsFailure::new(FailureKind::LONG_STEP, what, remedy).at(at).of(count, [first]);
     failure.with([("limit", limit), ("dt", dt)])
+}
+
+/// Failure of a disc that has entered a plane wall too deeply.
+fn too_deep_in_wall(at: Clock, disc: Culprit, touch: &WallTouch, limit: f64) -> PhysicsFailure {
+    let what = format!(
+        "{disc} has entered plane wall {} by {} of its radius, more than law.stop_penetration = {limit}",
+        touch.wall + 1,
+        significant(touch.penetration, 4)
+    );
+    let remedy = "the contacts are too soft for these weights and speeds: raise law.stiffness (and lower dt), or slow the discs or the wall";
+    let failure = PhysicsFailure::new(FailureKind::TOO_DEEP, what, remedy).at(at).of(1, [disc]);
+    failure.with([("penetration", touch.penetration), ("limit", limit)])
 }
 
 /// Failure of a contact of penetration ξ/(R_i + R_j) beyond the limit.

@@ -1,7 +1,7 @@
 //! Prescribed motion of walls.
 
 use super::GranularModel;
-use crate::method::pairwise::PrescribedMotion;
+use crate::method::pairwise::{PrescribedMotion, WallTouch};
 use crate::scene::WallMotion;
 
 /// Motion of all wall discs at a time.
@@ -20,13 +20,13 @@ pub(super) fn walls_at(motion: WallMotion, time: f64) -> PrescribedMotion {
     }
 }
 
-/// Power of moving walls (energy/time), if energy is tracked. All walls have one velocity, and their force on the grains is the sum of the grains'
-/// forces, because those between grains cancel. Forces are in the scene's order, grains first.
+/// Power of moving wall discs (energy/time), if energy is tracked. All have one velocity, and their force on the grains is the sum of the grains'
+/// forces without those of plane walls, because forces between grains cancel. Forces are those of the grains, in the scene's order.
 pub(super) fn wall_power(
     model: &GranularModel,
     motion: WallMotion,
     time: f64,
-    grains: usize,
+    touches: &[WallTouch],
     forces: impl FnOnce() -> Vec<[f64; 3]>,
 ) -> f64 {
     if motion == WallMotion::Fixed || !model.follows_energy() {
@@ -34,6 +34,25 @@ pub(super) fn wall_power(
     }
     let PrescribedMotion { velocity, .. } = walls_at(motion, time);
     let forces = forces();
-    let along = |axis: usize| velocity[axis] * forces[..grains].iter().map(|force| force[axis]).sum::<f64>();
+    let along = |axis: usize| {
+        let of_planes = touches.iter().map(|touch| touch.sums[axis]).sum::<f64>();
+        velocity[axis] * (forces.iter().map(|force| force[axis]).sum::<f64>() - of_planes)
+    };
     along(0) + along(1)
 }
+
+/// Power of moving plane walls (energy/time), if energy is tracked.
+pub(super) fn plane_wall_power(model: &GranularModel, time: f64, touches: &[WallTouch]) -> f64 {
+    if model.walls.are_fixed() || !model.follows_energy() {
+        return 0.0;
+    }
+    let surfaces = model.walls.surfaces_at(time);
+    let power = |touch: &WallTouch| {
+        let [vx, vy] = surfaces[touch.wall as usize].velocity;
+        vx * touch.sums[0] + vy * touch.sums[1]
+    };
+    touches.iter().map(power).sum()
+}
+
+#[cfg(test)]
+mod tests;

@@ -2,18 +2,25 @@
 //! each precision and search.
 
 use super::search::PairSearch;
+use super::search::SearchCells;
 use super::state::{AT_A_TIME, MovingDiscs, StepEndRow};
-use super::{CarriedQuery, CarriedState, Dynamics, LawTask, PairSystem, PrescribedMotion, SchemeTask};
+use super::{
+    CarriedQuery, CarriedState, Dynamics, LawTask, PairSystem, PlaneWalls, PrescribedMotion, SchemeTask,
+    WallGrid, WallTouch, touching_disc,
+};
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::Arc;
 use stripmine_kernels::InstructionSet;
 use stripmine_kernels::backend::Precision;
-use stripmine_kernels::integrator::{Draws, Scheme};
+use stripmine_kernels::integrator::{Draws, Inertia, Scheme};
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::{Law, ObservationRequest};
+use stripmine_kernels::over_pieces;
 use stripmine_kernels::sweep::fast::{
     Advance, EquationOfMotion, ForceRecords, PassReport, StateRecords, SweepReport,
 };
+use stripmine_kernels::sweep::walls::touch;
 
 /// [`Dynamics`] of any method, for an engine with state of precision `S`, forces of precision `P` and search `Q`.
 pub(super) trait CompiledDynamics<S, P, Q>: Send + Sync {
@@ -31,6 +38,12 @@ pub(super) trait CompiledDynamics<S, P, Q>: Send + Sync {
 
     /// Adds up the forces of all pairs.
     fn sweep(&self, sweep: SweepArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError>;
+
+    /// As [`Dynamics::walls`].
+    fn walls(&self) -> Option<&Arc<PlaneWalls>>;
+
+    /// Finds the contacts with plane walls.
+    fn touch_walls(&self, touching: WallArguments<'_, S, P, Q>) -> Vec<WallTouch>;
 
     /// Observes all pairs.
     fn observe(&self, sweep: ObservationArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError>;
@@ -55,6 +68,14 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>, D: Dynamics> CompiledDynam
 
     fn sweep(&self, sweep: SweepArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError> {
         self.with_law(sweep)
+    }
+
+    fn walls(&self) -> Option<&Arc<PlaneWalls>> {
+        Dynamics::walls(self)
+    }
+
+    fn touch_walls(&self, touching: WallArguments<'_, S, P, Q>) -> Vec<WallTouch> {
+        self.with_wall_law(touching).unwrap_or_default()
     }
 
     fn observe(&self, sweep: ObservationArguments<'_, S, P, Q>) -> Result<SweepReport, ProgramError> {
@@ -166,6 +187,43 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> LawTask for SweepArguments
 
     fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Self::Output {
         self.search.sweep(&law, &self.state.records, self.sums, self.asked, self.set)
+    }
+}
+
+/// Arguments of the search for contacts with plane walls.
+pub(super) struct WallArguments<'a, S, P, Q> {
+    pub(super) state: &'a MovingDiscs<S>,
+    pub(super) inertia: Inertia,
+    pub(super) search: &'a Q,
+    pub(super) walls: &'a WallGrid<P>,
+}
+
+impl<S: Precision, P: Precision, Q: PairSearch<S, P>> LawTask for WallArguments<'_, S, P, Q> {
+    type Output = Vec<WallTouch>;
+
+    fn with<L: Law<2> + Send + Sync + 'static>(self, law: L) -> Vec<WallTouch> {
+        let WallArguments { state, inertia, search, walls } = self;
+        let cells = search.cells();
+        let touches = |discs: Range<usize>| {
+            let mut found = vec![];
+            for disc in discs {
+                let elements = cells.cell(disc).map_or(&[][..], |cell| walls.in_cell(cell));
+                if elements.is_empty() {
+                    continue;
+                }
+                let inverse = inertia.inverse(0, |number| number, || state.inverse(0, disc).to_f64());
+                let radius = state.radius(disc);
+                let [vx, vy, omega] = state.rates(disc);
+                let touching = touching_disc(state.place(disc), [vx, vy], omega, [radius, inverse]);
+                for element in elements {
+                    if let Some(contact) = touch(&law, &touching, &element.numbers) {
+                        found.push(WallTouch::new(disc, element.wall, radius, &contact));
+                    }
+                }
+            }
+            found
+        };
+        over_pieces(0..state.moving(), touches).concat()
     }
 }
 

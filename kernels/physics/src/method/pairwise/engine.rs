@@ -1,10 +1,11 @@
 //! Pairwise engine: computes all forces, then corrects and predicts in one pass.
 
-use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, SweepArguments};
+use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, SweepArguments, WallArguments};
 use super::search::{PairSearch, SearchCells};
 use super::state::{CellMove, Members, MovingDiscs, StepEndRow};
 use super::{
-    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PrescribedMotion, SortSchedule, not_finite,
+    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PrescribedMotion, SortSchedule, WallGrid,
+    WallTouch, not_finite,
 };
 use crate::domain::Domain;
 use crate::method::{Clock, PhysicsFailure};
@@ -26,6 +27,9 @@ const FEW: usize = 5000;
 
 /// Dynamics, system, and the instruction set of their loops.
 pub(super) type EngineParts<S, P, Q> = (Arc<dyn CompiledDynamics<S, P, Q>>, PairSystem, InstructionSet);
+
+/// How far a position may be rounded out of its cell, relative to the cell.
+const BESIDE: f64 = 1e-3;
 
 /// Alignment number of the sums; columns of the state have smaller ones.
 const SUMS: usize = 24;
@@ -49,6 +53,9 @@ pub(crate) struct PairEngine<S, P, Q> {
     /// Discs so near to an open side that they may leave through it before lists are rebuilt.
     pub(super) boundary_candidates: Vec<u32>,
     pub(super) elapsed: Elapsed,
+    /// Plane walls in the cells, if there are any, and their contacts when forces were last computed.
+    walls: Option<WallGrid<P>>,
+    pub(super) touches: Vec<WallTouch>,
 }
 
 impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
@@ -82,6 +89,12 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
     ) -> Self {
         let carried = dynamics.carried(system.dt);
         let sums = ForceRecords::zeros(SUMS, members.numbers.len());
+        let walls = dynamics.walls().map(|walls| {
+            let grid = search.cells().grid();
+            let [x, y] = grid.frame.edge;
+            let margin = search.lists().map_or(BESIDE * x.min(y), |lists| 0.5 * lists.skin());
+            WallGrid::new(walls.clone(), grid, margin)
+        });
         let mut engine = PairEngine {
             state: MovingDiscs::new(&system, &carried, &start, members),
             sums,
@@ -95,6 +108,8 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
             orders: 0,
             awaits_forces: false,
             boundary_candidates: vec![],
+            walls,
+            touches: vec![],
         };
         engine.update_wall_velocity();
         engine
@@ -219,6 +234,27 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         // Sums of owned discs are zero already.
         sums.clear(state.moving()..state.len());
         dynamics.sweep(SweepArguments { state, sums, search, asked, set: *set })
+    }
+
+    /// Finds the contacts with plane walls and adds their forces, disc by disc in the order of the walls.
+    pub(super) fn add_wall_forces(&mut self) {
+        let time = self.elapsed.time();
+        let PairEngine { dynamics, system, state, sums, search, walls: Some(walls), touches, .. } = self
+        else {
+            return;
+        };
+        walls.update(time);
+        let inertia = system.inertia;
+        *touches = dynamics.touch_walls(WallArguments { state, inertia, search, walls });
+        for WallTouch { disc, sums: added, .. } in &*touches {
+            let disc = *disc as usize;
+            let before = sums.of(disc);
+            for (sum, &added) in added.iter().enumerate() {
+                sums.set(sum, disc, before[sum] + P::from_f64(added));
+            }
+        }
+        // The sort keeps the order of the walls of a disc.
+        touches.sort_by_key(|touch| state.number(touch.disc as usize));
     }
 
     /// Fails at pairs with a grain whose force is not finite.

@@ -31,6 +31,7 @@ mod state_form;
 mod stepping;
 mod timings;
 mod unwrapped;
+mod walls;
 
 pub(crate) use columns::real_column;
 use compiled::CompiledDynamics;
@@ -46,8 +47,11 @@ pub(crate) use state_form::{CarriedQuery, CarriedState};
 pub(crate) use stepping::{GravityWork, RemovableDiscs, SteppingDiscs};
 pub use timings::{HaloTraffic, Phase, Timings};
 pub(crate) use unwrapped::{unwrapped, wrapped};
+pub use walls::{PlaneMotion, PlaneWall, PlaneWalls};
+pub(crate) use walls::{WallGrid, WallTouch, each_touch, touching_disc};
 
 use crate::domain::Domain;
+use std::sync::Arc;
 use stripmine_kernels::integrator::{Inertia, Scheme};
 use stripmine_kernels::law::Law;
 use stripmine_kernels::noise::NoiseSource;
@@ -102,6 +106,16 @@ pub(crate) trait Dynamics: Send + Sync {
 
     /// Returns the prescribed motion of discs that no force moves at a time; none if they are at rest.
     fn prescribed(&self, _time: f64) -> Option<PrescribedMotion> {
+        None
+    }
+
+    /// Returns the plane walls, if there are any.
+    fn walls(&self) -> Option<&Arc<PlaneWalls>> {
+        None
+    }
+
+    /// Applies a task to the law between discs and plane walls, if there are any.
+    fn with_wall_law<W: LawTask>(&self, _work: W) -> Option<W::Output> {
         None
     }
 }

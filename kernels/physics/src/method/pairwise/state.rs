@@ -242,6 +242,15 @@ impl<S: Precision> MovingDiscs<S> {
         [row[0].to_f64(), self.rate(row)]
     }
 
+    /// Rates of change of x, y and the angle of a disc; 0 where it does not rotate.
+    pub(crate) fn rates(&self, disc: usize) -> [f64; 3] {
+        let rate = |freedom: usize| match self.records.has(RecordEntry::of(freedom, 1)) {
+            true => self.records.get(RecordEntry::of(freedom, 1), disc).to_f64() / self.velocity_scale,
+            false => 0.0,
+        };
+        [0, 1, 2].map(rate)
+    }
+
     /// Position of a disc relative to the centre of its cell (length).
     pub(crate) fn place(&self, disc: usize) -> [f64; 2] {
         self.records.position(disc)

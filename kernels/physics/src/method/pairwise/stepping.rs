@@ -1,12 +1,13 @@
 //! Interface of stepped discs for methods, whether one engine, several ranks or vector programs step them.
 
 use super::search::{PairSearch, SearchCells};
-use super::{Elapsed, NameableDiscs, PairEngine, Phase, wrapped};
+use super::{Elapsed, NameableDiscs, PairEngine, Phase, WallTouch, wrapped};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::{PerParticle, PhysicsFailure, SteeringError, SteppedState};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::{GrainStates, Particle, Particles};
 use stripmine_kernels::backend::Precision;
+use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::ObservationRequest;
 use stripmine_kernels::ledger::{Ledger, VectorLength};
 use stripmine_kernels::single_threaded_if;
@@ -46,6 +47,11 @@ pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
 
     /// Discs at the start.
     fn start(&self) -> &Particles;
+
+    /// Contacts with plane walls when forces were last computed, in the order of the discs' numbers, then of the walls.
+    fn wall_touches(&self) -> &[WallTouch] {
+        &[]
+    }
 
     /// Number of discs in cells owned by another disc.
     fn shared_cells(&self) -> usize {
@@ -161,8 +167,13 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
 
     fn compute_forces(&mut self, asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
         let mut timings = self.elapsed.timings;
-        let met =
-            timings.time(Phase::Forces, || single_threaded_if(self.is_small(), || self.add_forces(asked)))?;
+        let met = timings.time(Phase::Forces, || {
+            single_threaded_if(self.is_small(), || {
+                let met = self.add_forces(asked)?;
+                self.add_wall_forces();
+                Ok::<_, ProgramError>(met)
+            })
+        })?;
         self.elapsed.timings = timings;
         self.awaits_forces = false;
         self.reject_not_finite_forces(&met)?;
@@ -179,6 +190,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
 
     fn start(&self) -> &Particles {
         &self.start
+    }
+
+    fn wall_touches(&self) -> &[WallTouch] {
+        &self.touches
     }
 
     fn shared_cells(&self) -> usize {

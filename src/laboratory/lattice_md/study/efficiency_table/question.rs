@@ -125,6 +125,8 @@ pub(crate) fn counting_model(cells: usize, choice: TableFeatures) -> Result<Gran
         sides: [columns, rows].map(|count| 0.5 * count as f64),
         mask,
         coordinates,
+        walls: std::sync::Arc::default(),
+        lines: vec![],
         contact: Contact {
             spring: Spring::Hertz,
             stiffness: 100.0,

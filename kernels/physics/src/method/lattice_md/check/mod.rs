@@ -15,10 +15,13 @@ use super::scene::{GranularScene, SearchKind};
 use crate::domain::Domain;
 use crate::method::compress;
 use crate::method::entry::left_out;
+use crate::method::lattice_md::wall_checks;
+use crate::method::pairwise::PlaneWalls;
 use crate::particles::{Particle, ParticleKind, Particles};
 use crate::scene::{MistakeKind, RADIUS, SceneError, SceneErrors, SceneValues, Warning};
 use crate::start::{self, InitialState, StatedStart};
 use crate::words::Words;
+use std::sync::Arc;
 
 /// Checked scene: its discs, its lattice, and reported properties.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +34,8 @@ pub struct CheckedGranularScene {
     pub particles: Particles,
     /// True if all discs have one radius and one mass, and there are no walls.
     pub alike: bool,
+    /// Plane walls.
+    pub walls: Arc<PlaneWalls>,
     /// The lattice.
     pub geometry: Geometry,
     /// Estimates of the motion.
@@ -100,11 +105,13 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
     let mut errors = Vec::new();
     let mut choices: Vec<String> = choice::engine(&mut document.scene).into_iter().collect();
     let GranularDocument { scene, values } = &document;
+    let segments = scene.plane.segments();
     let stated = StatedStart {
         values,
         domain: &scene.domain,
         start: &scene.start,
         walls: scene.walls,
+        barriers: &segments,
         conserved: scene.domain.periodic,
         compress,
     };
@@ -121,6 +128,18 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
         let reason = format!("the limit is law.max_penetration = {limit}");
         errors.extend(start::overlaps(&stated, domain, particles, limit, &reason));
     }
+    let walls = made.as_ref().map(|InitialState { domain, particles, .. }| {
+        let shapes = wall_checks::shapes(&document, domain, particles);
+        let sides = wall_checks::closed_sides(&document.scene, particles);
+        let reach = particles.grains().iter().map(|grain| grain.radius).fold(0.0, f64::max);
+        let walls = document.scene.plane_walls(domain, reach, sides);
+        if shapes.is_empty() {
+            errors.extend(wall_checks::cut_discs(&document, domain, &walls, particles));
+        }
+        errors.extend(shapes);
+        Arc::new(walls)
+    });
+    let walls = walls.unwrap_or_default();
     let radii = made.as_ref().and_then(|made| made.particles.radii());
     let radii = start::radii(&document.scene.start, radii);
     let domain = made.as_ref().map(|made| made.domain).or_else(|| document.scene.domain.stated());
@@ -155,10 +174,12 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
     let scene = document.scene;
     let estimates = MotionEstimates::of(&scene, &particles);
     warnings.append(&mut tolerated);
-    warnings.extend(motion::warnings(&scene, &domain, &particles, &geometry, &estimates));
+    warnings.extend(wall_checks::gaps(&scene, &domain, &walls, &particles));
+    warnings.extend(motion::warnings(&scene, &domain, &particles, (&geometry, &walls), &estimates));
     let alike = all_alike(&particles);
-    let left_out = not_modelled(&scene, &particles, alike);
+    let left_out = not_modelled(&scene, &particles, &walls, alike);
     Ok(CheckedGranularScene {
+        walls,
         scene,
         domain,
         particles,
@@ -221,16 +242,21 @@ fn numbered(document: &GranularDocument, particles: &Particles) -> Option<SceneE
 }
 
 /// Parts of the model that the scene does not need.
-fn not_modelled(scene: &GranularScene, particles: &Particles, alike: bool) -> Vec<String> {
+fn not_modelled(
+    scene: &GranularScene,
+    particles: &Particles,
+    walls: &PlaneWalls,
+    alike: bool,
+) -> Vec<String> {
     let contact = &scene.law.contact;
-    let rubs = contact.friction > 0.0;
+    let (rubs, smooth) = (contact.friction > 0.0, !scene.has_friction());
     left_out(&[
-        (!rubs, "friction, spin and torque: law.friction is 0"),
-        (rubs && contact.shear_damping == 0.0, "friction, spin and torque: law.shear_damping is 0"),
+        (smooth && !rubs, "friction, spin and torque: law.friction is 0"),
+        (smooth && rubs, "friction, spin and torque: law.shear_damping is 0"),
         (contact.normal_damping == 0.0, "normal damping: law.normal_damping is 0"),
         (alike, "radius and mass of each disc: all discs are equal, so these are numbers, not vectors"),
         (scene.domain.gravity == [0.0; 2], "gravity: domain.gravity is 0"),
-        (particles.grain_count() == particles.len(), "walls: there are no wall discs"),
+        (particles.grain_count() == particles.len() && walls.is_empty(), "walls: there are no wall discs"),
         (scene.domain.periodic == [false; 2], "periodic images: both sides are open"),
     ])
 }

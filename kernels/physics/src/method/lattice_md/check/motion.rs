@@ -8,6 +8,7 @@ use crate::method::lattice_md::model::{GearValues, GranularScheme, OnLongStep};
 use crate::method::lattice_md::scene::{GranularScene, Integrator};
 use crate::method::lattice_md::theory::contact::HeadOn;
 use crate::method::lattice_md::theory::step_matrix::largest_step;
+use crate::method::pairwise::PlaneWalls;
 use crate::number::significant;
 use crate::particles::{Particle, Particles, longest_step};
 use crate::scene::{
@@ -84,12 +85,14 @@ impl MotionEstimates {
                 std::f64::consts::TAU * frequency * ax.hypot(ay)
             }
         };
+        let planes = scene.plane.list.iter().map(|wall| wall.motion.fastest()).fold(0.0, f64::max);
         let fall = (2.0 * gravity * radius).sqrt();
-        let speed = (2.0 * square).sqrt().max(fall).max(walls);
+        let speed = (2.0 * square).sqrt().max(fall).max(walls).max(planes);
         let law = scene.law.contact;
         let contact = HeadOn { law, speed, effective_mass: 0.5 * mass };
         let duration = (speed > 0.0).then(|| contact.duration());
-        let damping = law.normal_damping * scene.integrator.dt;
+        let [normal_damping, _] = scene.dampings();
+        let damping = normal_damping * scene.integrator.dt;
         MotionEstimates {
             approach_speed: speed,
             contact_duration: duration,
@@ -123,7 +126,7 @@ impl From<StepRejection> for Warning {
 pub(super) fn instability(document: &GranularDocument) -> Option<StepRejection> {
     let scene = &document.scene;
     let Integrator { dt, scheme, .. } = scene.integrator;
-    let (gamma, limit) = (scene.law.contact.normal_damping, damping_limit(scheme));
+    let ([gamma, _], limit) = (scene.dampings(), damping_limit(scheme));
     let name = scheme_in_words(scheme);
     (gamma * dt > limit).then(|| {
         let message = format!(
@@ -269,7 +272,7 @@ pub(super) fn warnings(
     scene: &GranularScene,
     domain: &Domain,
     particles: &Particles,
-    geometry: &Geometry,
+    (geometry, walls): (&Geometry, &PlaneWalls),
     estimates: &MotionEstimates,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
@@ -277,7 +280,7 @@ pub(super) fn warnings(
         warnings.push(Warning { check, share, is_refusal: false, key: key.path(), message, suggestion });
     };
     let contact = &scene.law.contact;
-    let rubs = scene.law.has_friction();
+    let rubs = scene.has_friction();
     if !rubs && contact.friction > 0.0 {
         let why = "law.friction bounds a shear force that law.shear_damping = 0 makes zero".to_owned();
         warn(
@@ -299,7 +302,8 @@ pub(super) fn warnings(
     }
     depth_warnings(scene, domain, particles, estimates, &mut warn);
     let [gx, gy] = scene.domain.gravity;
-    if (gx != 0.0 || gy != 0.0) && particles.grain_count() == particles.len() {
+    let has_no_walls = particles.grain_count() == particles.len() && walls.is_empty();
+    if (gx != 0.0 || gy != 0.0) && has_no_walls {
         let why = "there is gravity but there are no walls: discs fall forever, or out of the box".to_owned();
         warn(
             "no walls",
@@ -318,10 +322,9 @@ pub(super) fn warnings(
                 .contains(&(grain.position[axis] - domain.origin[axis] + displacement))
         })
     };
-    let has_no_walls = particles.grain_count() == particles.len();
     if has_no_walls && particles.grains().iter().any(leaves) {
         let why = "sides that are not periodic do not confine discs, and there are no wall discs: a grain that leaves the box ends the run";
-        let what = "make them periodic, line them with wall discs (particles.wall_positions), or use method.kind = \"hard-disks\"";
+        let what = "set domain.closed_sides = \"wall\", make them periodic, or line them with wall discs (particles.wall_positions)";
         warn("open sides", f64::INFINITY, &PERIODIC, why.to_owned(), what.to_owned());
     }
     if let Some((rounding, step)) = lost_motion(scene, domain, geometry, estimates)

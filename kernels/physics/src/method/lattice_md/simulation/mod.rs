@@ -14,7 +14,8 @@ use super::{
 };
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::{
-    Crossings, Elapsed, NameableDiscs, Phase, PrescribedMotion, SteppingDiscs, Timings, unwrapped, wrapped,
+    Crossings, Elapsed, NameableDiscs, Phase, PrescribedMotion, SteppingDiscs, Timings, WallTouch, unwrapped,
+    wrapped,
 };
 use crate::method::{PerParticle, PhysicsFailure, SteeringError};
 use crate::particles::{Particle, Particles};
@@ -41,6 +42,8 @@ pub(super) struct LatticeMd<S, P> {
     elapsed: Elapsed,
     /// Cells that positions are measured in while the Index is built; empty if they are those of the arrays.
     anchor: Vec<u32>,
+    /// Contacts with plane walls when forces were last computed.
+    touches: Vec<WallTouch>,
 }
 
 impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
@@ -73,6 +76,7 @@ impl<S: backend::Precision, P: backend::Precision> LatticeMd<S, P> {
             walls,
             rival,
             anchor: vec![],
+            touches: vec![],
         }
     }
 
@@ -176,7 +180,11 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
 
     // The programs are compiled for the quantities that the model needs.
     fn compute_forces(&mut self, _asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
-        self.move_walls(self.elapsed.time());
+        let time = self.elapsed.time();
+        self.move_walls(time);
+        if !self.model.walls.are_fixed() {
+            self.arrays.move_plane_walls(&self.model, time);
+        }
         let mut timings = self.elapsed.timings;
         if self.elapsed.crossings.is_followed() || self.model.is_anchored::<S>() {
             self.anchor.clear();
@@ -213,6 +221,10 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
             None => {
                 timings.time(Phase::Index, || self.run(&[Part::Lattice]))?;
                 let counted = timings.time(Phase::Forces, || self.run(&[Part::Forces]))?;
+                if !self.model.walls.is_empty() {
+                    timings.time(Phase::Forces, || self.run(&[Part::Walls]))?;
+                    self.touches = self.arrays.wall_touches(&self.model);
+                }
                 let found = watch.filter(|_| counted[DEEP.0 as usize] > 0);
                 let deep = found.map_or(vec![], |watch| self.marked_on_lattice(watch.depth()));
                 SweepReport { deep, dissipated: self.power_on_lattice(), ..SweepReport::default() }
@@ -261,6 +273,10 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
 
     fn start(&self) -> &Particles {
         &self.start
+    }
+
+    fn wall_touches(&self) -> &[WallTouch] {
+        &self.touches
     }
 
     fn lists(&self) -> Option<(usize, u64)> {
@@ -337,6 +353,9 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
     }
 
     fn length(&self, length: VectorLength) -> Option<u64> {
+        if length == VectorLength::WallElements {
+            return Some(self.arrays.lengths().range(length).len() as u64);
+        }
         let rival = self.rival.as_ref()?;
         match length {
             VectorLength::Candidates => Some(rival.candidates() as u64),

@@ -44,7 +44,7 @@ fn in_units(checked: &CheckedGranularScene, number: f64, dimension: &str) -> Str
 }
 
 fn one_contact(checked: &CheckedGranularScene) -> Option<StepLimit> {
-    let (scheme, damping) = (checked.scene.integrator.scheme, checked.scene.law.contact.normal_damping);
+    let (scheme, [damping, _]) = (checked.scene.integrator.scheme, checked.scene.dampings());
     let contact = contact(checked, FASTEST);
     let step = largest_step(scheme, contact.stiffest(), damping)?;
     let why = format!(
@@ -75,7 +75,8 @@ fn packing(checked: &CheckedGranularScene) -> Option<StepLimit> {
         return None;
     }
     let contact = contact(checked, 1.0);
-    let step = largest_step(scheme, NETWORK * contact.stiffest(), NETWORK * law.normal_damping)?;
+    let [damping, _] = checked.scene.dampings();
+    let step = largest_step(scheme, NETWORK * contact.stiffest(), NETWORK * damping)?;
     let why = format!(
         "largest eigenvalue of the step matrix with {NETWORK} times spring and damper of a contact at the typical speed, {}: a disc pressed from all sides",
         in_units(checked, contact.speed, "length/time")
@@ -93,8 +94,10 @@ fn packing(checked: &CheckedGranularScene) -> Option<StepLimit> {
 /// Limit for the drag that slows both surfaces of a pair: γ_S M_eff (1/m + 1/m + R²/I + R²/I).
 fn friction(checked: &CheckedGranularScene) -> Option<StepLimit> {
     let law = &checked.scene.law;
-    let rate = law.contact.shear_damping * (1.0 + 1.0 / law.inertia.factor());
-    let step = largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| law.has_friction())?;
+    let [_, damping] = checked.scene.dampings();
+    let rate = damping * (1.0 + 1.0 / law.inertia.factor());
+    let step =
+        largest_step(checked.scene.integrator.scheme, 0.0, rate).filter(|_| checked.scene.has_friction())?;
     let why = format!(
         "largest eigenvalue of the step matrix on the drag of friction between two surfaces: rate {}",
         in_units(checked, rate, "1/time")
