@@ -127,8 +127,15 @@ impl Flight {
         read.finish_reading()?;
         let (domain, start) = (&flight.domain, &flight.start);
         let conserved = domain.periodic;
-        let stated =
-            StatedStart { values: &values, domain, start, walls: WallMotion::Fixed, conserved, compress };
+        let stated = StatedStart {
+            values: &values,
+            domain,
+            start,
+            walls: WallMotion::Fixed,
+            barriers: &[],
+            conserved,
+            compress,
+        };
         let made = create_initial_state(&stated)?;
         SceneErrors::ok_if_empty(outside(&stated, &made.domain, &made.particles))?;
         Ok(Flight { bounds: Some(made.domain), made: made.particles, ..flight })

@@ -2,7 +2,9 @@
 
 use super::elements::ELEMENT_NUMBERS;
 use crate::isa::{Element, Predicate, Vector};
-use crate::law::{Env, Law, ObservationRequest, ParticleField, ParticleSum, StatedEnv, WallCoefficient};
+use crate::law::{
+    Env, Law, LawTable, ObservationRequest, ParticleField, ParticleSum, StatedEnv, WallCoefficient,
+};
 use std::cell::Cell;
 
 /// Displacement of an element that does not count (length): no disc is as large, and its square is finite in single precision.
@@ -80,6 +82,11 @@ impl<V: Vector, U: Fn(f64) -> V + Copy, N: Fn(&'static str) + Copy> Env<2> for &
     #[inline(always)]
     fn uniform(self, value: f64) -> V {
         (self.uniform)(value)
+    }
+    #[expect(clippy::unreachable, reason = "the contact law has no table")]
+    #[inline]
+    fn lookup<const COLUMNS: usize>(self, _: &LawTable, _: [usize; COLUMNS], _: V) -> [V; COLUMNS] {
+        unreachable!("a law of contacts has no table")
     }
     #[inline(always)]
     fn none(self, _: V::Predicate) -> bool {
