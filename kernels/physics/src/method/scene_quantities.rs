@@ -64,9 +64,12 @@ fn parsed(name: &str) -> Option<(&'static str, QuantityKind, &'static str)> {
     is_known.then_some((found.2, found.3, found.4))
 }
 
+/// Lists of quantities by the method and the names of the scene's own.
+type QuantityLists = BTreeMap<(&'static str, Vec<String>), &'static [ObservedQuantity]>;
+
 /// Quantities of a method followed by those of a scene; none if a name is unknown. Each list is made once and kept.
 fn listed(entry: &MethodEntry, names: &[String]) -> Option<&'static [ObservedQuantity]> {
-    static LISTS: Mutex<BTreeMap<(&str, Vec<String>), &[ObservedQuantity]>> = Mutex::new(BTreeMap::new());
+    static LISTS: Mutex<QuantityLists> = Mutex::new(BTreeMap::new());
     if names.is_empty() {
         return Some(entry.quantities);
     }

@@ -41,7 +41,7 @@ pub(super) fn closed_sides(scene: &GranularScene, particles: &Particles) -> Clos
 impl GranularScene {
     /// Plane walls of the scene in its box, those of the user first, then those of closed sides; `reach` is the largest radius (length).
     pub(super) fn plane_walls(&self, domain: &Domain, reach: f64, sides: ClosedSides) -> PlaneWalls {
-        let closed = (sides == ClosedSides::Wall).then(|| side_ends(domain)).unwrap_or_default();
+        let closed = if sides == ClosedSides::Wall { side_ends(domain) } else { vec![] };
         let stated = self.plane.list.iter().enumerate();
         let stated = stated.map(|(number, wall)| wall.plane((number + 1).to_string(), &self.law.contact));
         let closed = closed.into_iter().map(|(side, ends)| {
