@@ -347,10 +347,12 @@ impl Simulation {
     )]
     fn set(&self, py: Python<'_>, quantities: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
         let Some(quantities) = quantities else { return Ok(()) };
-        let count = self.look(py, |state| state.running.particles().len())?;
+        let (count, walls) = self.look(py, |state| {
+            (state.running.particles().len(), state.running.wall_velocities().len())
+        })?;
         let mut state = self.state(py)?;
         state.is_sound(py)?;
-        for change in changes(quantities, count, self.checked.dimensions)? {
+        for change in changes(quantities, count, self.checked.dimensions, walls)? {
             let (checked, program) = (&*self.checked, built());
             let SimulationState { running, record, .. } = &mut *state;
             let changed = computed(py, || match record {

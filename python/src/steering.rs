@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use stripmine_physics::method::{Change, SteeredQuantity};
 use stripmine_physics::words::Words;
 
-/// Changes of keyword arguments, in their order, for a number of particles in some dimensions.
+/// Changes of keyword arguments, in their order, for a number of particles in some dimensions, and a number of walls.
 ///
 /// # Errors
 /// `TypeError` for another keyword or a value that is no number; `Error` for another shape.
@@ -16,6 +16,7 @@ pub(crate) fn changes(
     given: &Bound<'_, PyDict>,
     particles: usize,
     dimensions: usize,
+    walls: usize,
 ) -> PyResult<Vec<Change>> {
     let py = given.py();
     let to_numbers = py.import("numpy")?.getattr("array")?;
@@ -27,7 +28,7 @@ pub(crate) fn changes(
             return Err(PyTypeError::new_err(format!("set has no quantity {name}; expected one of {known}")));
         };
         let numbers = to_numbers.call1((value, "float64"))?.cast_into::<PyArrayDyn<f64>>()?;
-        let expected = quantity.shape(particles, dimensions);
+        let expected = quantity.shape(particles, dimensions, walls);
         if numbers.shape() != expected {
             let [found, expected] = [numbers.shape(), &expected].map(shape);
             let message =

@@ -324,12 +324,14 @@ class Simulation:
         angular_velocities: Any = None,
         bath_temperature: Any = None,
         gravity: Any = None,
+        wall_velocities: Any = None,
     ) -> None:
         """Changes quantities at this moment, one after the other.
 
         `velocities` (length/time) have the shape (N, D) and `angular_velocities` (1/time) the shape (N,), in the order of `particles()`; values of
-        wall discs must stay. `bath_temperature` is kT (energy), and `gravity` an acceleration (length/time²) of shape (2,). Granular discs have
-        velocities, angular velocities (with friction) and gravity, hard discs velocities and gravity (along closed sides), Langevin particles
+        wall discs must stay. `bath_temperature` is kT (energy), and `gravity` an acceleration (length/time²) of shape (2,).
+        `wall_velocities` (length/time) have a row for each table [[walls]], without oscillations; rows of walls that a force drives stay 0. Granular
+        discs have velocities, angular velocities (with friction), gravity and velocities of walls, hard discs velocities and gravity (along closed sides), Langevin particles
         velocities and the temperature of their bath, bodies velocities.
 
         The integrator restarts at this state, as at the start of a scene. The work of a change is counted apart: energy errors and balances leave it

@@ -216,6 +216,9 @@ pub(crate) struct FilmSide {
 pub(crate) struct FilmFrame {
     /// Time of the frame.
     pub time: f64,
+    /// Ends of the plane walls that move (length).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) walls: Vec<[[f64; 2]; 2]>,
     /// Centre and shade of every moving disc. A NaN shade has no meaning; a NaN centre means that the disc is absent.
     pub discs: Vec<([f64; 2], f64)>,
 }

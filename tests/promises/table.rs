@@ -185,7 +185,7 @@ impl Case {
         let existing = ExistingRun::Resume { other_version: false };
         let job = RunJob {
             prepared: prepared.into(),
-            quantities: self.entry.quantities,
+            quantities: prepared.quantities(self.entry),
             program: &built(),
             is_open_ended: false,
         };

@@ -2,7 +2,7 @@
 
 use super::colouring::{ColouringError, RunColouring};
 use super::particles::{SHOWN, WIDTH, point_radius};
-use super::segments::{resting, segments};
+use super::segments::WallSegments;
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::section::{Film, FilmFrame as Moment, FilmSide};
@@ -99,7 +99,8 @@ pub(super) fn film(run: &Path, colours: &RunColouring) -> Result<(Film, Vec<Stri
         return Err(FilmError::NoFrame { file, others: unusable_files(run) });
     };
     let scene = scene_of(run);
-    let (mut film, notes) = reel.film(&last, cast, colours, scene.as_ref())?;
+    let walls = WallSegments::of_run(run, scene.as_ref());
+    let (mut film, notes) = reel.film(&last, cast, colours, (scene.as_ref(), &walls))?;
     let name = run.file_stem().unwrap_or_default().to_string_lossy();
     film.title = format!("{}: {}", quoted::quoted(&name), film.title);
     Ok((film, notes))
@@ -173,7 +174,7 @@ impl FilmFrames {
         last: &ParticleFrame,
         cast: FilmParticles,
         colours: &RunColouring,
-        scene: Option<&toml::Table>,
+        (scene, walls): (Option<&toml::Table>, &WallSegments),
     ) -> Result<(Film, Vec<String>), FilmError> {
         const AXES: [usize; 2] = [0, 1];
         let everywhere = || self.kept.iter().flat_map(|(_, seen)| seen).flatten();
@@ -211,21 +212,20 @@ impl FilmFrames {
                 ([f64::NAN; 2], f64::NAN)
             }
         };
+        let window = [[left, low], [right, high]];
         let frames: Vec<Moment> = self
             .kept
             .iter()
             .map(|(time, seen)| Moment {
                 time: *time,
+                walls: walls.moving(*time, window),
                 discs: moving.iter().map(|&place| disc(seen, place)).collect(),
             })
             .collect();
-        let window = [[left, low], [right, high]];
         let grain_count = cast.particles.iter().filter(|it| it.kind == ParticleKind::Grain).count();
         let gravity = scene.and_then(|scene| window::domain_pair(scene, "gravity")).unwrap_or([0.0; 2]);
         let [width, height] = [right - left, high - low];
-        let (rest, walls_move) = scene.map_or_else(Default::default, resting);
-        let planes =
-            segments(&rest, 0.0, window).into_iter().map(|ends| FilmSide { ends, is_periodic: false });
+        let planes = walls.resting(window).into_iter().map(|ends| FilmSide { ends, is_periodic: false });
         let film = Film {
             title: format!(
                 "{}, time {} to {}",
@@ -248,10 +248,7 @@ impl FilmFrames {
             shades,
         };
         let beyond = beyond as f64 / (self.kept.len() * moving.len()).max(1) as f64;
-        let mut notes = self.notes(&cast, &film, is_of_points, beyond);
-        if walls_move {
-            notes.push("Plane walls that move are not shown.".to_owned());
-        }
+        let notes = self.notes(&cast, &film, is_of_points, beyond);
         Ok((film, notes))
     }
 

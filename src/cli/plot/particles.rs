@@ -1,7 +1,7 @@
 //! Pictures of the particles of a run: its last state and, in a long box, the density along it over time.
 
 use super::colouring::{ColouringError, RunColouring};
-use super::segments::segments;
+use super::segments::WallSegments;
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::figure::{ChartAxis, Drawing, DrawnShape, Figure, Guide, HeatMap, Picture, Tint};
@@ -82,7 +82,9 @@ pub(super) fn pictures(run: &Path, colours: &RunColouring) -> Result<Vec<Figure>
     let shades = Shades { values, ends, quantity, label, tells_apart };
     let stem = run.file_stem().unwrap_or_default().to_string_lossy();
     let name: String = stem.chars().take(NAMED).collect();
-    let states = views.iter().map(|&view| state_figure(&name, &last, scene.as_ref(), &traces, &shades, view));
+    let walls = WallSegments::of_run(run, scene.as_ref());
+    let backdrop = (scene.as_ref(), &walls);
+    let states = views.iter().map(|&view| state_figure(&name, &last, backdrop, &traces, &shades, view));
     Ok(states.chain(density_figure(&name, &last, scene.as_ref(), &slices)).collect())
 }
 
@@ -126,7 +128,7 @@ fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
 fn state_figure(
     name: &str,
     frame: &ParticleFrame,
-    scene: Option<&toml::Table>,
+    (scene, walls): (Option<&toml::Table>, &WallSegments),
     traces: &[[f64; 3]],
     shades: &Shades,
     view: ViewDirection,
@@ -151,7 +153,7 @@ fn state_figure(
     // Shapes outside the window would cover the labels around it.
     let upright = bounds[0].into_iter().filter(|at| across.contains(at)).map(|at| [[at, y], [at, y_end]]);
     let level = bounds[1].into_iter().filter(|at| up.contains(at)).map(|at| [[x, at], [x_end, at]]);
-    let planes = scene.map_or(vec![], |scene| segments(scene, frame.time, [[x, y], [x_end, y_end]]));
+    let planes = walls.at(frame.time, [[x, y], [x_end, y_end]]);
     let walls = upright.chain(level).chain(planes).map(|ends| DrawnShape::Line { ends: ends.map(place) });
     let is_inside = |position: [f64; 3]| {
         let [a, b] = flat(position);

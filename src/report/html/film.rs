@@ -43,7 +43,7 @@ pub(crate) fn data(film: &Film) -> Value {
     let [width, height] = [window[1][0] - window[0][0], window[1][1] - window[0][1]];
     let half_a_pixel = 0.5 * width.max(height) / PIXELS;
     let half_a_shade = 0.5 * (shades[1] - shades[0]) / f64::from(style::SHADES);
-    json!({
+    let mut data = json!({
         "units": units,
         "window": window,
         "sides": sides,
@@ -57,7 +57,19 @@ pub(crate) fn data(film: &Film) -> Value {
         "y": column(film, |disc| disc.0[1], half_a_pixel),
         // Shades beyond an end look like the end.
         "shades": column(film, |disc| disc.1.clamp(shades[0], shades[1]), half_a_shade),
-    })
+    });
+    if frames.iter().any(|frame| !frame.walls.is_empty()) {
+        let walls = frames.iter().map(|frame| rounded(&frame.walls, half_a_pixel));
+        data["walls"] = json!(walls.collect::<Vec<_>>());
+    }
+    data
+}
+
+/// Ends of walls, rounded to a step (length).
+fn rounded(walls: &[[[f64; 2]; 2]], step: f64) -> Vec<[[f64; 2]; 2]> {
+    // Half a power of ten keeps the decimals few.
+    let step = 10f64.powf(step.log10().floor());
+    walls.iter().map(|ends| ends.map(|end| end.map(|at| (at / step).round() * step))).collect()
 }
 
 /// Encodes a number of every disc in every frame with an error of at most `tolerance`, if two bytes suffice.
@@ -88,6 +100,7 @@ mod tests {
             frames: (0..frames)
                 .map(|frame| FilmFrame {
                     time: 0.05 * frame as f64,
+                    walls: vec![],
                     discs: (0..discs).map(|disc| place(frame, disc)).collect(),
                 })
                 .collect(),

@@ -136,11 +136,11 @@ function filmScreen(film, canvas) {
   /** Returns a colour of the page. */
   const ofPage = (name) => getComputedStyle(canvas).getPropertyValue(name);
 
-  /** Draws the sides of the box within a strip; periodic sides are dashed. */
-  const drawSides = (onto, strip) => {
+  /** Draws sides of the box or walls within a strip; periodic sides are dashed. */
+  const drawSides = (onto, strip, sides) => {
     onto.strokeStyle = ofPage("--quiet");
     onto.lineWidth = 2;
-    for (const { ends, is_periodic } of film.sides) {
+    for (const { ends, is_periodic } of sides) {
       onto.setLineDash(is_periodic ? [6, 5] : []);
       onto.beginPath();
       for (const [x, y] of ends) {
@@ -162,7 +162,7 @@ function filmScreen(film, canvas) {
       onto.strokeStyle = "#8a8a8a";
       onto.lineWidth = 0.5;
       fixed.radii.forEach((radius, i) => disc(onto, fixed.x[i], fixed.y[i], radius, strip));
-      drawSides(onto, strip);
+      drawSides(onto, strip, film.sides);
     });
     if (!film.long) return;
     onto.fillStyle = onto.strokeStyle = ofPage("--text");
@@ -185,15 +185,17 @@ function filmScreen(film, canvas) {
     },
     show(frame) {
       ctx.drawImage(still, 0, 0, width, layout.height);
-      ctx.strokeStyle = ofPage("--rim");
-      ctx.lineWidth = 0.6;
       eachStrip(ctx, (strip) => {
+        ctx.strokeStyle = ofPage("--rim");
+        ctx.lineWidth = 0.6;
         radii.forEach((radius, i) => {
           const at = frame * radii.length + i;
           if (Number.isNaN(xs[at])) return;
           ctx.fillStyle = colour(shades[at]);
           disc(ctx, xs[at], ys[at], radius, strip);
         });
+        const walls = film.walls?.[frame] ?? [];
+        if (walls.length > 0) drawSides(ctx, strip, walls.map((ends) => ({ ends, is_periodic: false })));
       });
     },
   };

@@ -61,7 +61,7 @@ fn section(name: &str) -> Section {
             falls: false,
             radii: vec![0.1],
             fixed: vec![],
-            frames: vec![FilmFrame { time: 0.0, discs: vec![([0.5, 0.5], 1.0)] }],
+            frames: vec![FilmFrame { time: 0.0, walls: vec![], discs: vec![([0.5, 0.5], 1.0)] }],
             shade: HOSTILE.to_owned(),
             shades: [0.0, 1.0],
         }),

@@ -1,6 +1,6 @@
 //! LAMMPS files for its users and their tools: a data file (`atom_style sphere`) and a text dump.
 //!
-//! Grains are of type 1, wall discs of type 2. The box extends from −1/2 to 1/2 in z.
+//! Grains are of type 1, wall discs of type 2, grains of further species of the next types. The box extends from −1/2 to 1/2 in z.
 
 use super::extxyz::{DEPTH, ParticleFrame};
 use super::growing_file::GrowingFile;
@@ -8,8 +8,8 @@ use super::open_sinks::SinkKind;
 use super::output_format::{FrameWriting, OutputFormat};
 use super::run_moment::RunMoment;
 use super::sink::{TextFormat, TextSink};
+use super::species::type_of;
 use super::trajectory::FrameReading;
-use crate::particles::ParticleKind;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -40,8 +40,6 @@ pub(crate) const DATA: OutputFormat = OutputFormat {
 pub(super) const DATA_HEADING: &str = "LAMMPS data file by stripmine";
 /// Columns of a dump of this program.
 pub(super) const DUMP_COLUMNS: &str = "id type x y z vx vy vz omegaz radius mass";
-/// Type of wall discs in files of this program.
-pub(super) const WALL_TYPE: &str = "2";
 
 /// Mass of a ball of a density and radius, as LAMMPS computes it in two dimensions too.
 pub(super) fn mass_of_sphere(density: f64, radius: f64) -> f64 {
@@ -65,13 +63,6 @@ impl TextFormat for LammpsSnapshots {
     }
 }
 
-fn atom_type(kind: ParticleKind) -> u8 {
-    match kind {
-        ParticleKind::Grain => 1,
-        ParticleKind::Wall => 2,
-    }
-}
-
 /// Lower and upper bounds of the box along x, y and z (length).
 fn bounds(frame: &ParticleFrame) -> [[f64; 2]; 3] {
     let [x, y] = [0, 1].map(|axis| [frame.origin[axis], frame.origin[axis] + frame.cell[axis]]);
@@ -88,7 +79,8 @@ fn bounds(frame: &ParticleFrame) -> [[f64; 2]; 3] {
 pub fn write_data(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()> {
     let discs = frame.particles.all();
     writeln!(out, "{DATA_HEADING}, atom_style sphere, timestep = {}\n", frame.step)?;
-    writeln!(out, "{} atoms\n2 atom types\n", discs.len())?;
+    let types = discs.iter().map(|disc| type_of(disc) + 1).max().unwrap_or(0).max(2);
+    writeln!(out, "{} atoms\n{types} atom types\n", discs.len())?;
     for (axis, [low, high]) in ['x', 'y', 'z'].into_iter().zip(bounds(frame)) {
         writeln!(out, "{low:?} {high:?} {axis}lo {axis}hi")?;
     }
@@ -99,7 +91,7 @@ pub fn write_data(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()>
     for disc in discs {
         let density = disc.mass / (VOLUME * (disc.radius * disc.radius * disc.radius));
         let ([x, y, z], diameter) = (disc.position, 2.0 * disc.radius);
-        writeln!(out, "{} {} {diameter:?} {density:?} {x:?} {y:?} {z:?}", disc.id, atom_type(disc.kind))?;
+        writeln!(out, "{} {} {diameter:?} {density:?} {x:?} {y:?} {z:?}", disc.id, type_of(disc) + 1)?;
     }
     writeln!(out, "\nVelocities\n")?;
     for disc in discs {
@@ -125,7 +117,7 @@ pub fn write_dump(frame: &ParticleFrame, out: &mut impl Write) -> io::Result<()>
     writeln!(out, "ITEM: ATOMS {DUMP_COLUMNS}")?;
     for disc in frame.particles.all() {
         let ([x, y, z], [u, v, w]) = (disc.position, disc.velocity);
-        write!(out, "{} {} {x:?} {y:?} {z:?} {u:?} {v:?} {w:?} ", disc.id, atom_type(disc.kind))?;
+        write!(out, "{} {} {x:?} {y:?} {z:?} {u:?} {v:?} {w:?} ", disc.id, type_of(disc) + 1)?;
         writeln!(out, "{:?} {:?} {:?}", disc.omega, disc.radius, disc.mass)?;
     }
     Ok(())

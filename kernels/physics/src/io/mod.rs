@@ -18,6 +18,7 @@ pub mod regular_file;
 pub mod replace;
 pub mod run_moment;
 pub mod sink;
+mod species;
 pub mod start_files;
 pub mod table_file;
 pub mod trajectory;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 /// Unit, kind and meaning of a quantity of a thing, by the thing and the end of the name.
-const KINDS: [(&str, &str, &str, QuantityKind, &str); 7] = [
+const KINDS: [(&str, &str, &str, QuantityKind, &str); 11] = [
     (
         "wall",
         "impulse_x",
@@ -44,14 +44,22 @@ const KINDS: [(&str, &str, &str, QuantityKind, &str); 7] = [
         QuantityKind::Instant,
         "Torque of the grains on a plane wall about its middle.",
     ),
+    ("wall", "x", "length", QuantityKind::Instant, "Middle of a plane wall that moves, along x."),
+    ("wall", "y", "length", QuantityKind::Instant, "Middle of a plane wall that moves, along y."),
+    ("wall", "velocity_x", "length/time", QuantityKind::Instant, "Velocity of a plane wall that moves, along x."),
+    ("wall", "velocity_y", "length/time", QuantityKind::Instant, "Velocity of a plane wall that moves, along y."),
 ];
 
 /// Labels of things without a number.
 const SIDES: [&str; 4] = ["left", "right", "bottom", "top"];
 
-/// Names of all quantities of a thing, by its kind and its label: a number from 1, or a side of the box.
-pub(crate) fn names_of(thing: &'static str, label: &str) -> Vec<String> {
-    let of_thing = KINDS.iter().filter(|(of, ..)| *of == thing);
+/// Quantities of walls that move.
+const OF_MOTION: [&str; 4] = ["x", "y", "velocity_x", "velocity_y"];
+
+/// Names of all quantities of a thing, by its kind and its label: a number from 1, or a side of the box. Only a wall that moves has a position and
+/// a velocity.
+pub(crate) fn names_of(thing: &'static str, label: &str, moves: bool) -> Vec<String> {
+    let of_thing = KINDS.iter().filter(|(of, what, ..)| *of == thing && (moves || !OF_MOTION.contains(what)));
     of_thing.map(|(_, what, ..)| format!("{thing}_{label}_{what}")).collect()
 }
 
@@ -116,17 +124,17 @@ mod tests {
     #[test]
     fn columns_of_walls_are_known_by_name() {
         let method = METHODS.iter().find(|method| method.vocabulary.keys.method == "lattice-md").unwrap();
-        let own = names_of("wall", "12");
+        let own = names_of("wall", "12", true);
         assert!(
-            own.contains(&"wall_12_torque".to_owned()) && names_of("wall", "top")[2] == "wall_top_force_x"
+            own.contains(&"wall_12_torque".to_owned()) && names_of("wall", "top", false)[2] == "wall_top_force_x"
         );
         let columns = |own: &[String]| -> Vec<String> {
             let all = method.quantities.iter().map(|it| it.name.to_owned());
             std::iter::once("step".to_owned()).chain(all).chain(own.iter().cloned()).collect()
         };
         let found = observed_quantities(METHODS, &columns(&own)).unwrap();
-        assert_eq!(found.len(), method.quantities.len() + 5);
-        assert!(found.last().unwrap().unit == "force·length");
+        assert_eq!(found.len(), method.quantities.len() + 9);
+        assert!(found.last().unwrap().unit == "length/time");
         assert!(std::ptr::eq(found, method.quantities_with(&own)));
         for wrong in ["wall_0_torque", "wall_1_weight", "wall_torque", "gate_1_torque"] {
             assert_eq!(observed_quantities(METHODS, &columns(&[wrong.to_owned()])), None, "{wrong}");

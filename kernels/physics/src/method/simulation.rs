@@ -92,6 +92,11 @@ pub trait Simulation: Send {
         Err(has_no("this method", change.quantity, "its simulations cannot be changed", remedy))
     }
 
+    /// Velocities of the scene's `[[walls]]`, without oscillations (length/time).
+    fn wall_velocities(&self) -> Vec<[f64; 2]> {
+        vec![]
+    }
+
     /// Seconds spent in each phase since the start or the last reset, by name.
     fn phases(&self) -> BTreeMap<&'static str, f64>;
 

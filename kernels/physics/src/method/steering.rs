@@ -16,17 +16,20 @@ define_words! {
         BathTemperature = "bath_temperature",
         /// Acceleration of gravity (length/time²).
         Gravity = "gravity",
+        /// Velocities of the scene's `[[walls]]`, without oscillations (length/time).
+        WallVelocities = "wall_velocities",
     }
 }
 
 impl SteeredQuantity {
-    /// Shape of the values for a number of particles in two or three dimensions.
-    pub fn shape(self, particles: usize, dimensions: usize) -> Vec<usize> {
+    /// Shape of the values for a number of particles in two or three dimensions, and a number of `[[walls]]`.
+    pub fn shape(self, particles: usize, dimensions: usize, walls: usize) -> Vec<usize> {
         match self {
             SteeredQuantity::Velocities => vec![particles, dimensions],
             SteeredQuantity::AngularVelocities => vec![particles],
             SteeredQuantity::BathTemperature => vec![],
             SteeredQuantity::Gravity => vec![2],
+            SteeredQuantity::WallVelocities => vec![walls, 2],
         }
     }
 }
@@ -80,15 +83,26 @@ impl Reported for SteeringError {
 }
 
 impl Change {
-    /// Checks the values against the present particles.
+    /// Checks the values against the present particles and the number of `[[walls]]`.
     ///
     /// # Errors
     /// Refusal that names the first value that is not finite, or moves a wall disc.
-    pub(crate) fn check(&self, particles: &Particles) -> Result<(), SteeringError> {
+    pub(crate) fn check(&self, particles: &Particles, walls: usize) -> Result<(), SteeringError> {
         let Change { quantity, values } = self;
         let (name, count) = (quantity.word(), particles.len());
-        let fits =
-            [2, 3].iter().any(|&it| quantity.shape(count, it).iter().product::<usize>() == values.len());
+        if *quantity == SteeredQuantity::WallVelocities {
+            if walls == 0 {
+                let remedy = "start another scene with [[walls]]";
+                return Err(SteeringError::refused(format!("the scene has no [[walls]], so no {name}"), remedy));
+            }
+            if values.len() != 2 * walls {
+                let reason = format!("{name} has {} values, which do not fit {walls} walls", values.len());
+                let remedy = "give one row [x, y] for each table [[walls]], in their order";
+                return Err(SteeringError::refused(reason, remedy));
+            }
+        }
+        let size = |it: &usize| quantity.shape(count, *it, walls).iter().product::<usize>();
+        let fits = [2, 3].iter().any(|it| size(it) == values.len());
         if !fits {
             let reason = format!("{name} has {} values, which do not fit {count} particles", values.len());
             return Err(SteeringError::refused(
@@ -96,11 +110,14 @@ impl Change {
                 "give one row for each particle, in the order of the particles",
             ));
         }
-        let width =
-            if *quantity == SteeredQuantity::Velocities { (values.len() / count.max(1)).max(1) } else { 1 };
+        let width = match quantity {
+            SteeredQuantity::Velocities => (values.len() / count.max(1)).max(1),
+            SteeredQuantity::WallVelocities => 2,
+            _ => 1,
+        };
         let place = |at: usize| match quantity {
             SteeredQuantity::BathTemperature => name.to_owned(),
-            SteeredQuantity::Velocities => format!("{name}[{}, {}]", at / width, at % width),
+            SteeredQuantity::Velocities | SteeredQuantity::WallVelocities => format!("{name}[{}, {}]", at / width, at % width),
             _ => format!("{name}[{at}]"),
         };
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {
@@ -152,6 +169,12 @@ impl Change {
             _ => {}
         }
         motion
+    }
+
+    /// Velocities of the walls, if they change (length/time).
+    pub(crate) fn wall_velocities(&self) -> Option<Vec<[f64; 2]>> {
+        let rows = || self.values.chunks_exact(2).map(|row| [row[0], row[1]]).collect();
+        (self.quantity == SteeredQuantity::WallVelocities).then(rows)
     }
 
     /// Values of gravity, if it changes.

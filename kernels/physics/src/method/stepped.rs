@@ -65,6 +65,11 @@ pub trait Stepwise: Send + Sized {
         vec![]
     }
 
+    /// As [`Simulation::wall_velocities`].
+    fn wall_velocities(_run: &Stepped<Self>) -> Vec<[f64; 2]> {
+        vec![]
+    }
+
     /// As [`Simulation::per_particle`], where the method has more data than the state.
     fn per_particle(run: &Stepped<Self>) -> &dyn PerParticle {
         run.state.per_particle()
@@ -238,8 +243,12 @@ impl<M: Stepwise> Simulation for Stepped<M> {
         M::restore(self, clock, snapshot)
     }
 
+    fn wall_velocities(&self) -> Vec<[f64; 2]> {
+        M::wall_velocities(self)
+    }
+
     fn steer(&mut self, change: &Change) -> Result<(), SteeringError> {
-        change.check(&self.particles())?;
+        change.check(&self.particles(), M::wall_velocities(self).len())?;
         let work = M::change(self, change)?;
         self.steering.add(change, work);
         Ok(())

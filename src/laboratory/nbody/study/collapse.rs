@@ -161,6 +161,7 @@ fn drawing(moments: &[Moment], time: f64) -> Drawing {
 fn film(sphere: &Sphere) -> Film {
     let frames = sphere.moments.iter().filter(|it| it.time <= FILM_END).step_by(2).map(|it| FilmFrame {
         time: it.time,
+        walls: vec![],
         discs: it
             .bodies
             .iter()

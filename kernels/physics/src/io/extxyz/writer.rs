@@ -6,6 +6,7 @@ use crate::io::open_sinks::SinkKind;
 use crate::io::output_format::{FrameWriting, OutputFormat};
 use crate::io::run_moment::RunMoment;
 use crate::io::sink::{TextFormat, TextSink};
+use crate::io::species::symbol;
 use crate::io::trajectory::{FrameReading, reader};
 use crate::particles::{Particle, ParticleKind};
 use std::io::{self, Write};
@@ -121,7 +122,10 @@ impl RowBlock {
 
     fn add(&mut self, disc: &Particle) {
         match disc.kind {
-            ParticleKind::Grain => self.put(*b"Si", 2),
+            ParticleKind::Grain => {
+                let name = symbol(disc.species);
+                self.put(name, 1 + usize::from(name[1] > 0));
+            }
             ParticleKind::Wall => self.put(*b"W", 1),
         }
         self.vector(disc.position);

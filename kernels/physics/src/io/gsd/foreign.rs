@@ -134,8 +134,10 @@ impl Chunks<'_> {
         let particle = |at: usize| {
             let kind = kinds.get(at).copied().unwrap_or(0);
             let is_wall = wall == Some(kind);
+            // A type of wall discs is no species.
+            let before = u32::from(wall.is_some_and(|wall| wall < kind));
             Particle {
-                species: if is_wall { 0 } else { kind.min(u8::MAX.into()) as u8 },
+                species: if is_wall { 0 } else { (kind - before).min(u8::MAX.into()) as u8 },
                 velocity: velocity.as_ref().map_or([0.0; 3], |velocity| vector(velocity, at)),
                 radius: diameter.as_ref().map_or(0.0, |diameter| 0.5 * diameter[at]),
                 mass: mass.as_ref().map_or(0.0, |mass| mass[at]),

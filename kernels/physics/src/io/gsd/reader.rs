@@ -8,6 +8,7 @@ use super::{
 };
 use crate::io::extxyz::ParticleFrame;
 use crate::io::regular_file;
+use crate::io::species::kind_and_species;
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::collections::HashSet;
 use std::fs::{File, Metadata};
@@ -287,8 +288,8 @@ impl Chunks<'_> {
         let velocity = self.numbers(EXACT_VELOCITY, (count, axes), false)?;
         let [angle, omega] =
             [self.numbers(ANGLE, (count, 1), false)?, self.numbers(OMEGA, (count, 1), false)?];
-        if let Some(row) = kinds.iter().position(|&kind| kind > 1) {
-            let (found, expected) = (kinds[row].to_string(), "0 (a grain) or 1 (a wall disc)");
+        if let Some(row) = kinds.iter().position(|&kind| kind > 1 + u32::from(u8::MAX)) {
+            let (found, expected) = (kinds[row].to_string(), "1 (a wall disc), or a species of grains: 0, or 2 to 256");
             return Err(self.wrong(TYPE, GsdErrorKind::Number { row, found, expected }));
         }
         let mut seen = HashSet::with_capacity(count);
@@ -300,8 +301,8 @@ impl Chunks<'_> {
         };
         let particle = |number: usize| Particle {
             id: ids[number],
-            kind: if kinds[number] == 0 { ParticleKind::Grain } else { ParticleKind::Wall },
-            species: 0,
+            kind: kind_and_species(kinds[number]).0,
+            species: kind_and_species(kinds[number]).1,
             position: vector(&position, number),
             velocity: vector(&velocity, number),
             angle: angle[number],

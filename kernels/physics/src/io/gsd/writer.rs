@@ -14,7 +14,8 @@ use crate::io::extxyz::ParticleFrame;
 use crate::io::growing_file::{FileMark, GrowingFileError};
 use crate::io::run_moment::{RunHeader, RunMoment};
 use crate::io::sink::Sink;
-use crate::particles::{Particle, ParticleKind};
+use crate::io::species::{symbol, type_of};
+use crate::particles::Particle;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -115,10 +116,16 @@ impl Sink for GsdWriter {
             file.add(COUNT, [[particles.len() as u32]])?;
         }
         if is_first {
-            file.add(TYPES, TYPE_NAMES.map(|name| name.map(|byte| byte as i8)))?;
+            let last = particles.iter().map(|it| it.species).max().unwrap_or(0);
+            let more = (1..=last).map(|species| {
+                let [first, second] = symbol(species);
+                [first, second, 0]
+            });
+            let names: Vec<[u8; 3]> = TYPE_NAMES.into_iter().chain(more).collect();
+            file.add(TYPES, names.into_iter().map(|name| name.map(|byte| byte as i8)))?;
         }
         if !is_same {
-            file.add(TYPE, particles.iter().map(|it| [u32::from(it.kind == ParticleKind::Wall)]))?;
+            file.add(TYPE, particles.iter().map(|it| [type_of(it)]))?;
             file.add(MASS, single(|it| it.mass))?;
             file.add(DIAMETER, single(|it| 2.0 * it.radius))?;
         }

@@ -3,9 +3,9 @@
 use super::text::{TextFile, TextLine, TextMistake, TextReadError};
 use super::{
     QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, is_count, lines,
-    species_of_type,
+    particle_of_type,
 };
-use crate::io::lammps::{DATA_HEADING, WALL_TYPE, mass_of_sphere};
+use crate::io::lammps::{DATA_HEADING, mass_of_sphere};
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::collections::HashMap;
 use std::path::Path;
@@ -279,15 +279,13 @@ fn atom(
         true => words[2],
         false => words[1],
     };
-    let is_wall = is_own && kind == WALL_TYPE;
     let mut position = [0.0; 3];
     for (coordinate, word) in position.iter_mut().zip(&words[style.position..]) {
         *coordinate = file.number(row, "the position", word)?;
     }
     let id = file.id(row, words[0])?;
-    let mut particle =
-        Particle::at_rest(id, if is_wall { ParticleKind::Wall } else { ParticleKind::Grain }, position);
-    particle.species = if is_wall { 0 } else { species_of_type(kind) };
+    let (disc, species) = particle_of_type(kind, is_own);
+    let mut particle = Particle { species, ..Particle::at_rest(id, disc, position) };
     if let Some([diameter, density]) = style.sphere {
         particle.radius = 0.5 * file.positive(row, "the diameter", words[diameter])?;
         particle.mass = mass_of_sphere(file.positive(row, "the density", words[density])?, particle.radius);

@@ -2,9 +2,9 @@
 
 use super::text::{TextFile, TextLine, TextMistake, TextReadError};
 use super::{
-    QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, lines, species_of_type,
+    QuantitySource, StartBox, StartFileError, StartFormat, StartFrame, StartRequest, lines, particle_of_type,
 };
-use crate::io::lammps::{DUMP_COLUMNS, WALL_TYPE};
+use crate::io::lammps::DUMP_COLUMNS;
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::path::Path;
 
@@ -109,13 +109,9 @@ impl RawDump {
                 return Err(file.wrong(row.number, TextMistake::Fields { found, expected }));
             }
             let id = id.map_or(Ok(number as u32 + 1), |at| file.id(row, words[at]))?;
-            let is_wall = is_own && kind.is_some_and(|at| words[at] == WALL_TYPE);
-            let mut particle = Particle::at_rest(
-                id,
-                if is_wall { ParticleKind::Wall } else { ParticleKind::Grain },
-                [0.0; 3],
-            );
-            particle.species = kind.filter(|_| !is_wall).map_or(0, |at| species_of_type(words[at]));
+            let (kind, species) =
+                kind.map_or((ParticleKind::Grain, 0), |at| particle_of_type(words[at], is_own));
+            let mut particle = Particle { species, ..Particle::at_rest(id, kind, [0.0; 3]) };
             for (axis, place) in places.iter().enumerate() {
                 let Some((at, is_scaled)) = *place else { continue };
                 let value = file.number(row, "the position", words[at])?;

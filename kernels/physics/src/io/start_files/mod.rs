@@ -14,7 +14,8 @@ mod xyz;
 use super::extxyz::{ForeignFormat, XyzReadError};
 use super::gsd::GsdReadError;
 use super::regular_file;
-use crate::particles::Particles;
+use super::species::kind_and_species;
+use crate::particles::{ParticleKind, Particles};
 use crate::quoted;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -220,9 +221,13 @@ pub fn read_start_file(path: &Path, request: StartRequest) -> Result<StartFrame,
     })
 }
 
-/// Species of a type of LAMMPS; types are numbered from 1.
-fn species_of_type(name: &str) -> u8 {
-    name.parse::<u32>().map_or(0, |number| number.saturating_sub(1).min(u8::MAX.into()) as u8)
+/// Kind and species of a type of LAMMPS; types are numbered from 1. In files of this program one of them is that of wall discs.
+fn particle_of_type(name: &str, is_own: bool) -> (ParticleKind, u8) {
+    let number = name.parse::<u32>().map_or(0, |number| number.saturating_sub(1));
+    match is_own {
+        true => kind_and_species(number),
+        false => (ParticleKind::Grain, number.min(u8::MAX.into()) as u8),
+    }
 }
 
 /// Lines of the first bytes of a file, without a byte-order mark.

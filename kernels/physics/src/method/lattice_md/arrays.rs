@@ -4,7 +4,7 @@ use super::lattice_walls::LatticeWalls;
 use super::options::ProgramVersion;
 use super::programs::scales;
 use super::{DiscUniformity, GranularModel};
-use crate::method::pairwise::WallTouch;
+use crate::method::pairwise::{PrescribedMotion, WallTouch, WallTracks};
 use crate::particles::{Particle, ParticleKind, Particles};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
@@ -261,14 +261,14 @@ impl<S: Precision, P: Precision> ProgramArrays<S, P> {
             index: AlignedColumn::filled(Array::Index as usize, 0, padded),
             halo_cell: aligned_array(Array::HaloCell, images.iter().map(|image| image.cell as u32 + 1)),
             halo_source: aligned_array(Array::HaloSource, images.iter().map(|image| image.source as u32 + 1)),
-            walls: LatticeWalls::new(model, 0.0),
+            walls: LatticeWalls::new(model, WallTracks::new(&model.walls).now()),
             lengths,
         }
     }
 
-    /// Moves the plane walls to a time.
-    pub(super) fn move_plane_walls(&mut self, model: &GranularModel, time: f64) {
-        self.walls = LatticeWalls::new(model, time);
+    /// Moves the plane walls.
+    pub(super) fn move_plane_walls(&mut self, model: &GranularModel, motions: &[PrescribedMotion]) {
+        self.walls = LatticeWalls::new(model, motions);
         self.lengths.walls = self.walls.runs();
     }
 

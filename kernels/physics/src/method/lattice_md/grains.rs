@@ -5,19 +5,20 @@ use super::contacts::{ContactSearch, ProgramExecution};
 use super::fast;
 use super::flux::Flux;
 use super::simulation::LatticeMd;
-use super::step_checks::{check_contact_depths, check_step_lengths};
+use super::step_checks::{check_contact_depths, check_step_lengths, check_wall_steps};
 use super::wall_checks::WallTouches;
 use super::wall_law::with_wall_law;
 use super::wall_sums::{WallSums, forces_and_torques};
 use super::walls::{plane_wall_power, wall_power};
 use super::{GranularModel, GranularTotals, Lengths, Timings};
 use crate::io::checkpoint::CheckpointColumn;
-use crate::method::pairwise::{SteppingDiscs, WallTouch};
+use crate::method::pairwise::{PlaneMotion, SteppingDiscs, WallTouch, WallTracks};
 use crate::method::stepped::SteppedState;
 use crate::method::{Elapsed, PerParticle, PhysicsFailure, SteeringError};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::Particles;
 use crate::scene::{Precision, WallMotion};
+use std::sync::Arc;
 use stripmine_kernels::ledger::{Ledger, VectorLength};
 
 /// Granular discs that are stepped. They never print and never write a file.
@@ -26,6 +27,7 @@ pub struct SteppedGrains {
     model: GranularModel,
     walls: WallMotion,
     totals: GranularTotals,
+    wall_tracks: WallTracks,
     wall_sums: WallSums,
     flux: Flux,
     /// Pairs visited in the last step.
@@ -67,12 +69,15 @@ impl SteppedGrains {
             (_, Precision::Mixed) => programs::<f64, f32>((&model, contacts, machine), walls, particles),
         };
         let (totals, wall_sums) = (GranularTotals::default(), WallSums::default());
+        let wall_tracks = WallTracks::new(&model.walls);
         let flux = Flux::new(&model.lines, stepping.as_ref());
-        let mut grains = SteppedGrains { stepping, model, walls, totals, wall_sums, flux, met: 0 };
+        let mut grains =
+            SteppedGrains { stepping, model, walls, totals, wall_tracks, wall_sums, flux, met: 0 };
         let power = grains.compute_forces()?;
         grains.stepping.finish()?;
         grains.totals = GranularTotals::starting_with(power, grains.wall_power());
         grains.wall_sums = WallSums::starting_with(&grains.model.walls, grains.stepping.wall_touches());
+        grains.wall_tracks.finish(0.0, 0.0, &grains.wall_sums.forces);
         Ok(grains)
     }
 
@@ -84,10 +89,14 @@ impl SteppedGrains {
         let far = self.stepping.advance()?;
         check_step_lengths(self.stepping.as_ref(), &far, self.model.watch, &mut self.totals)?;
         self.totals.shared_cells += self.stepping.shared_cells() as u64;
+        let (dt, time) = (self.model.dt, self.time());
+        self.wall_tracks.advance(dt, time);
+        check_wall_steps(self.stepping.as_ref(), &self.model, self.wall_tracks.now())?;
         let power = self.compute_forces()?;
+        self.wall_sums.add(dt, self.stepping.wall_touches());
+        self.wall_tracks.finish(dt, time, &self.wall_sums.forces);
         let wall_power = self.wall_power();
-        self.totals.add_work(self.model.dt, power, wall_power);
-        self.wall_sums.add(self.model.dt, self.stepping.wall_touches());
+        self.totals.add_work(dt, power, wall_power);
         self.stepping.finish()?;
         let discs = self.stepping.as_ref();
         self.flux.add(discs, discs.start().grains(), &self.model.domain());
@@ -111,6 +120,8 @@ impl SteppedGrains {
         // The contacts of this step are counted already.
         let totals = self.totals;
         let power = self.compute_forces()?;
+        self.wall_sums.restart(self.stepping.wall_touches());
+        self.wall_tracks.finish(0.0, self.time(), &self.wall_sums.forces);
         self.totals = totals.with_powers(power, self.wall_power());
         Ok(self.stepping.finish()?)
     }
@@ -121,6 +132,30 @@ impl SteppedGrains {
         self.stepping.set_gravity(gravity, self.model.counts_crossings())
     }
 
+    /// Gives the first walls other prescribed velocities (length/time) from now on.
+    pub(super) fn set_wall_velocities(&mut self, velocities: &[[f64; 2]]) {
+        self.wall_tracks.set_velocities(velocities, self.time());
+        self.rejoin_walls();
+    }
+
+    fn rejoin_walls(&mut self) {
+        let tracks = &self.wall_tracks;
+        if !tracks.are_fixed() {
+            self.model.walls = Arc::new(self.model.walls.joined(tracks));
+        }
+    }
+
+    /// Impulses on the plane walls.
+    #[cfg(test)]
+    pub(super) fn wall_sums(&self) -> &WallSums {
+        &self.wall_sums
+    }
+
+    /// Prescribed motions of the plane walls now.
+    pub(super) fn wall_motions(&self) -> impl Iterator<Item = PlaneMotion> + '_ {
+        self.wall_tracks.motions()
+    }
+
     /// Takes the step after which the integrator began from a checkpoint.
     pub(super) fn begun_after(&mut self, steps: u64) {
         self.stepping.elapsed_mut().begun = steps;
@@ -128,13 +163,16 @@ impl SteppedGrains {
 
     /// Computes all forces at the current positions; returns the power that contacts dissipate (energy/time).
     fn compute_forces(&mut self) -> Result<f64, PhysicsFailure> {
+        if !self.wall_tracks.are_fixed() {
+            self.stepping.move_plane_walls(&self.model.walls, self.wall_tracks.now());
+        }
         let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
         let touches = self.stepping.wall_touches();
         check_contact_depths(
             self.stepping.as_ref(),
             (&met.deep, touches),
-            self.model.watch,
+            &self.model,
             &mut self.totals,
         )?;
         let at_walls: f64 = match self.model.counts_dissipation() {
@@ -153,7 +191,7 @@ impl SteppedGrains {
             forces.truncate(grains);
             forces
         });
-        of_discs + plane_wall_power(&self.model, time, touches)
+        of_discs + plane_wall_power(&self.model, self.wall_tracks.now(), touches)
     }
 
     /// Steps done since the start of the scene.
@@ -201,23 +239,30 @@ impl SteppedGrains {
         if walls.is_empty() {
             return vec![];
         }
-        let (particles, time) = (self.stepping.unwrapped(), self.time());
-        let touches = WallTouches { walls, particles: &particles, domain: self.model.domain(), time };
+        let (particles, motions) = (self.stepping.unwrapped(), self.wall_tracks.now());
+        let touches = WallTouches { walls, particles: &particles, domain: self.model.domain(), motions };
         with_wall_law(self.model.wall_law(), touches)
     }
 
     /// Values of each plane wall and each line in the order of [`names_of`](crate::method::names_of): impulses since the start, forces and torque
-    /// now; number and mass since the start.
+    /// now, and position and velocity of one that moves; number and mass since the start.
     pub(super) fn own_values(&self) -> Vec<f64> {
-        let now = forces_and_torques(&self.model, &self.touches_now(), self.time());
-        let each = self.wall_sums.impulses.iter().zip(now);
-        let of_walls = each.flat_map(|(impulse, now)| impulse.iter().copied().chain(now));
+        let (model, motions) = (&self.model, self.wall_tracks.now());
+        let now = forces_and_torques(model, &self.touches_now(), motions);
+        let each = self.wall_sums.impulses.iter().zip(now).enumerate();
+        let of_walls = each.flat_map(|(wall, (impulse, now))| {
+            let [middle, velocity] = [model.walls.middle_at(wall, motions), motions[wall].velocity];
+            let moving = !model.walls.all()[wall].motion.is_fixed();
+            let path = [middle, velocity].concat().into_iter().filter(move |_| moving);
+            impulse.iter().copied().chain(now).chain(path)
+        });
         of_walls.chain(self.flux.sums.iter().flatten().copied()).collect()
     }
 
     /// Sums of the plane walls and lines by name, for a checkpoint.
     pub(super) fn own_entries(&self) -> Vec<(String, f64)> {
         let mut entries = self.wall_sums.entries(&self.model.walls);
+        entries.extend(self.wall_tracks.entries(&self.model.walls));
         entries.extend(self.flux.entries());
         entries
     }
@@ -228,6 +273,8 @@ impl SteppedGrains {
     /// As `find`.
     pub(super) fn restore_own(&mut self, find: impl Fn(&str) -> Result<f64, String>) -> Result<(), String> {
         self.wall_sums = WallSums::from_entries(&self.model.walls, &find)?;
+        self.wall_tracks.restore(&self.model.walls, self.stepping.elapsed().time(), &find)?;
+        self.rejoin_walls();
         self.flux.restore(self.stepping.as_ref(), find)
     }
 

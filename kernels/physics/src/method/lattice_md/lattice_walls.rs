@@ -2,7 +2,7 @@
 
 use super::GranularModel;
 use super::wall_law::with_wall_law;
-use crate::method::pairwise::{LawTask, WallTouch};
+use crate::method::pairwise::{LawTask, PrescribedMotion, WallTouch};
 use std::ops::Range;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::{AlignedColumn, Array, Memory, Slot};
@@ -14,7 +14,7 @@ use stripmine_kernels::sweep::walls::{ELEMENT_NUMBERS, TouchingDisc, WALL_ARRAYS
 /// How far a position may be rounded out of its cell, relative to the cell.
 const BESIDE: f64 = 1e-3;
 
-/// Elements of the plane walls at a time.
+/// Elements of the plane walls now.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LatticeWalls<P> {
     /// Elements with the same place among those of their cell follow each other.
@@ -26,14 +26,14 @@ pub(super) struct LatticeWalls<P> {
 }
 
 impl<P: Precision> LatticeWalls<P> {
-    /// Elements of a model's walls.
-    pub(super) fn new(model: &GranularModel, time: f64) -> Self {
+    /// Elements of a model's moved walls.
+    pub(super) fn new(model: &GranularModel, motions: &[PrescribedMotion]) -> Self {
         let (walls, shape) = (&model.walls, model.shape);
         let (counts, periodic) = ([shape.columns(), shape.rows()], shape.periodic());
         let grid = CellGrid { frame: model.frame, counts, periodic };
         let [x, y] = model.frame.edge;
-        let found = elements(&grid, &walls.pieces_at(time), walls.reach(), BESIDE * x.min(y));
-        let surfaces = walls.surfaces_at(time);
+        let found = elements(&grid, &walls.pieces_at(motions), walls.reach(), BESIDE * x.min(y));
+        let surfaces = walls.surfaces_at(motions);
         let mut place = 0;
         let mut before = None;
         let mut placed: Vec<(usize, u32, u32, [f64; ELEMENT_NUMBERS])> = found

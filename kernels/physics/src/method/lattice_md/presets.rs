@@ -20,6 +20,7 @@ define_presets![
     "wide-sizes",
     "hopper",
     "shear-cell",
+    "piston",
     "bench",
     "pipe-small-printed",
     "dense-gas-printed"

@@ -11,7 +11,7 @@ use super::{
     assemble_following_energy, ledger, model, programs,
 };
 use crate::io::checkpoint::CheckpointCounter;
-use crate::method::pairwise::Crossings;
+use crate::method::pairwise::{Crossings, PlaneMotion};
 use crate::method::stepped::{Stepped, Stepwise};
 use crate::method::{
     Change, Clock, MethodObservable, PhysicsFailure, RunWarning, Snapshot, StartPurpose, SteeredQuantity,
@@ -44,6 +44,8 @@ pub(super) struct GranularRun {
     /// Columns and rows of the lattice, if the scene needs one, and discs for each cell.
     lattice: Option<([usize; 2], f64)>,
     discs: [usize; 2],
+    /// Number of `[[walls]]`.
+    stated_walls: usize,
     /// Periodic check, if this is a run.
     run_monitor: Option<RunMonitor>,
     /// True if a checkpoint may lack the counts of crossed periods.
@@ -83,6 +85,7 @@ pub(super) fn begin(
         observing: Cell::default(),
         lattice: scene.needs_lattice().then_some((cells, geometry.occupancy)),
         discs: [count, particles.len() - count],
+        stated_walls: scene.plane.list.len(),
         run_monitor,
         counts_for_motion_alone: model_following_energy(checked).counts_crossings_for_motion_alone(),
     };
@@ -117,6 +120,26 @@ impl Stepped<GranularRun> {
         let sums = self.state.sums(scenery, work.gravity_path());
         observing.set(observing.get() + start.elapsed().as_secs_f64());
         sums
+    }
+
+    /// Refuses velocities (length/time) of driven walls, and of walls that could pass discs between two steps.
+    fn check_wall_velocities(&self, velocities: &[[f64; 2]]) -> Result<(), SteeringError> {
+        let GranularRun { model, .. } = &self.method;
+        let limit = model.watch.map_or(f64::INFINITY, |watch| watch.longest_step() / model.dt);
+        for (number, (velocity, motion)) in velocities.iter().zip(self.state.wall_motions()).enumerate() {
+            let speed = PlaneMotion { velocity: *velocity, ..motion }.fastest();
+            let (reason, remedy) = if motion.drive.is_some() && *velocity != [0.0; 2] {
+                ("which a force drives".to_owned(), "leave its row [0, 0]".to_owned())
+            } else if speed > limit {
+                let (speed, limit) = (significant(speed, 5), significant(limit, 5));
+                (format!("at up to {speed}: it could pass discs between two steps"), format!("keep it below {limit}"))
+            } else {
+                continue;
+            };
+            let reason = format!("wall_velocities[{number}] moves wall {}, {reason}", number + 1);
+            return Err(SteeringError::refused(reason, remedy));
+        }
+        Ok(())
     }
 
     /// Work of the programs relative to the fullest model on the same lattice; none where a step is not a fixed program.
@@ -178,6 +201,11 @@ impl Stepwise for GranularRun {
         work(run.seen())
     }
 
+    fn wall_velocities(run: &Stepped<Self>) -> Vec<[f64; 2]> {
+        let stated = run.state.wall_motions().take(run.method.stated_walls);
+        stated.map(|motion| motion.velocity).collect()
+    }
+
     fn own_values(run: &Stepped<Self>) -> Vec<f64> {
         run.state.own_values()
     }
@@ -210,6 +238,10 @@ impl Stepwise for GranularRun {
         }
         let GranularObservation { now, balance, .. } = run.seen();
         let (before, gravity_work) = (internal_energy(now), balance.gravity_work);
+        if let Some(velocities) = change.wall_velocities() {
+            run.check_wall_velocities(&velocities)?;
+            run.state.set_wall_velocities(&velocities);
+        }
         let motion = change.motion_of(&run.state.particles());
         run.state.restart(&motion, change.gravity())?;
         run.method.seen.take();

@@ -1,7 +1,8 @@
 //! Checks of a step of granular discs: contacts that are too deep, discs that are too fast.
 
-use super::{ContactWatch, GranularTotals, OnLongStep};
-use crate::method::pairwise::{NameableDiscs, WallTouch};
+use super::wall_checks::wall_name;
+use super::{ContactWatch, GranularModel, GranularTotals, OnLongStep};
+use crate::method::pairwise::{NameableDiscs, PrescribedMotion, WallTouch};
 use crate::method::{Clock, Culprit, FailureKind, PhysicsFailure};
 use crate::number::significant;
 
@@ -33,14 +34,37 @@ pub(super) fn check_step_lengths(
     }
 }
 
+/// Fails if a wall moves so far in a step that contacts may be missed.
+pub(super) fn check_wall_steps(
+    discs: &(impl NameableDiscs + ?Sized),
+    model: &GranularModel,
+    motions: &[PrescribedMotion],
+) -> Result<(), PhysicsFailure> {
+    let Some(watch) = model.watch else { return Ok(()) };
+    let limit = watch.longest_step();
+    let step = |motion: &PrescribedMotion| motion.velocity[0].hypot(motion.velocity[1]) * model.dt;
+    let Some(wall) = motions.iter().position(|motion| step(motion) > limit) else { return Ok(()) };
+    let (speed, dt) = (step(&motions[wall]) / model.dt, model.dt * limit / step(&motions[wall]));
+    let what = format!(
+        "{} moves at {} and farther than {} in the step; it could pass discs between two steps",
+        wall_name(&model.walls.all()[wall].label),
+        significant(speed, 5),
+        significant(limit, 7)
+    );
+    let remedy =
+        format!("lower dt to {}, or give the wall more mass, less force or less speed", significant(dt, 5));
+    let failure = PhysicsFailure::new(FailureKind::LONG_STEP, what, remedy).at(discs.clock());
+    Err(failure.with([("limit", limit), ("dt", dt)]))
+}
+
 /// Counts grains in contacts that are too deep, and stops above the limit. A pair may be listed once or from both sides.
 pub(super) fn check_contact_depths(
     discs: &(impl NameableDiscs + ?Sized),
     (pairs, touches): (&[[u32; 2]], &[WallTouch]),
-    watch: Option<ContactWatch>,
+    model: &GranularModel,
     totals: &mut GranularTotals,
 ) -> Result<(), PhysicsFailure> {
-    let Some(watch) = watch else { return Ok(()) };
+    let Some(watch) = model.watch else { return Ok(()) };
     let is_grain = |disc: &usize| discs.grains().contains(disc);
     let (mut grains, mut deepest): (Vec<usize>, Option<(f64, [usize; 2])>) = (vec![], None);
     let pairs = pairs.iter().map(|pair| pair.map(|disc| disc as usize));
@@ -67,7 +91,8 @@ pub(super) fn check_contact_depths(
         let (at, limit) = (discs.clock(), watch.stop_penetration);
         return Err(match (at_wall, deepest) {
             (Some(touch), _) if touch.penetration == most => {
-                too_deep_in_wall(at, discs.culprit(touch.disc as usize), touch, limit)
+                let wall = wall_name(&model.walls.all()[touch.wall as usize].label);
+                too_deep_in_wall(at, discs.culprit(touch.disc as usize), (touch, &wall), limit)
             }
             (_, Some((_, pair))) => too_deep(at, pair.map(|disc| discs.culprit(disc)), most, limit),
             _ => return Ok(()),
@@ -92,10 +117,9 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Phys
 }
 
 /// Failure of a disc that has entered a plane wall too deeply.
-fn too_deep_in_wall(at: Clock, disc: Culprit, touch: &WallTouch, limit: f64) -> PhysicsFailure {
+fn too_deep_in_wall(at: Clock, disc: Culprit, (touch, wall): (&WallTouch, &str), limit: f64) -> PhysicsFailure {
     let what = format!(
-        "{disc} has entered plane wall {} by {} of its radius, more than law.stop_penetration = {limit}",
-        touch.wall + 1,
+        "{disc} has entered {wall} by {} of its radius, more than law.stop_penetration = {limit}",
         significant(touch.penetration, 4)
     );
     let remedy = "the contacts are too soft for these weights and speeds: raise law.stiffness (and lower dt), or slow the discs or the wall";

@@ -1,7 +1,7 @@
 //! Impulses on plane walls since the start, and forces and torques now.
 
 use super::model::GranularModel;
-use crate::method::pairwise::{PlaneWalls, WallTouch};
+use crate::method::pairwise::{PlaneWalls, PrescribedMotion, WallTouch};
 
 /// Impulses of the grains on each wall since the start, and the forces of the last step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,7 +9,7 @@ pub(super) struct WallSums {
     /// Impulse on each wall along x and y (mass · length/time).
     pub(super) impulses: Vec<[f64; 2]>,
     /// Force on each wall along x and y.
-    forces: Vec<[f64; 2]>,
+    pub(super) forces: Vec<[f64; 2]>,
 }
 
 /// Names of the sums of a wall in checkpoints.
@@ -20,6 +20,11 @@ impl WallSums {
     pub(super) fn starting_with(walls: &PlaneWalls, touches: &[WallTouch]) -> WallSums {
         let count = walls.all().len();
         WallSums { impulses: vec![[0.0; 2]; count], forces: forces(count, touches) }
+    }
+
+    /// Replaces the forces of the last step, before a step that does not continue it.
+    pub(super) fn restart(&mut self, touches: &[WallTouch]) {
+        self.forces = forces(self.forces.len(), touches);
     }
 
     /// Adds the impulses of a step of `dt` (time) by the trapezoidal rule, as the integrators do.
@@ -72,17 +77,17 @@ fn forces(count: usize, touches: &[WallTouch]) -> Vec<[f64; 2]> {
     forces
 }
 
-/// Force along x and y on each wall, and torque about its middle, at a time.
+/// Force along x and y on each wall, and torque about its middle.
 pub(super) fn forces_and_torques(
     model: &GranularModel,
     touches: &[(WallTouch, [f64; 2])],
-    time: f64,
+    motions: &[PrescribedMotion],
 ) -> Vec<[f64; 3]> {
     let (walls, domain) = (&model.walls, model.domain());
     let mut all = vec![[0.0; 3]; walls.all().len()];
     for (touch, at) in touches {
         let number = touch.wall as usize;
-        let [x, y] = domain.displacement(walls.middle_at(number, time), *at);
+        let [x, y] = domain.displacement(walls.middle_at(number, motions), *at);
         let [fx, fy] = [-touch.sums[0], -touch.sums[1]];
         let sums = &mut all[number];
         (sums[0], sums[1], sums[2]) = (sums[0] + fx, sums[1] + fy, sums[2] + x * fy - y * fx);

@@ -42,13 +42,16 @@ pub(super) fn wall_power(
 }
 
 /// Power of moving plane walls (energy/time), if energy is tracked.
-pub(super) fn plane_wall_power(model: &GranularModel, time: f64, touches: &[WallTouch]) -> f64 {
-    if model.walls.are_fixed() || !model.follows_energy() {
+pub(super) fn plane_wall_power(
+    model: &GranularModel,
+    motions: &[PrescribedMotion],
+    touches: &[WallTouch],
+) -> f64 {
+    if !model.follows_energy() {
         return 0.0;
     }
-    let surfaces = model.walls.surfaces_at(time);
     let power = |touch: &WallTouch| {
-        let [vx, vy] = surfaces[touch.wall as usize].velocity;
+        let [vx, vy] = motions[touch.wall as usize].velocity;
         vx * touch.sums[0] + vy * touch.sums[1]
     };
     touches.iter().map(power).sum()

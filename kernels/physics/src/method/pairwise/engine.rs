@@ -4,7 +4,7 @@ use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, Swee
 use super::search::{PairSearch, SearchCells};
 use super::state::{CellMove, Members, MovingDiscs, StepEndRow};
 use super::{
-    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PrescribedMotion, SortSchedule, WallGrid,
+    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PlaneWalls, PrescribedMotion, SortSchedule, WallGrid,
     WallTouch, not_finite,
 };
 use crate::domain::Domain;
@@ -236,14 +236,17 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> PairEngine<S, P, Q> {
         dynamics.sweep(SweepArguments { state, sums, search, asked, set: *set })
     }
 
+    /// Moves the plane walls, if there are any.
+    pub(super) fn move_walls(&mut self, to: &Arc<PlaneWalls>, motions: &[PrescribedMotion]) {
+        self.walls.iter_mut().for_each(|walls| walls.move_walls(to, motions));
+    }
+
     /// Finds the contacts with plane walls and adds their forces, disc by disc in the order of the walls.
     pub(super) fn add_wall_forces(&mut self) {
-        let time = self.elapsed.time();
         let PairEngine { dynamics, system, state, sums, search, walls: Some(walls), touches, .. } = self
         else {
             return;
         };
-        walls.update(time);
         let inertia = system.inertia;
         *touches = dynamics.touch_walls(WallArguments { state, inertia, search, walls });
         for WallTouch { disc, sums: added, .. } in &*touches {

@@ -1,11 +1,12 @@
 //! Interface of stepped discs for methods, whether one engine, several ranks or vector programs step them.
 
 use super::search::{PairSearch, SearchCells};
-use super::{Elapsed, NameableDiscs, PairEngine, Phase, WallTouch, wrapped};
+use super::{Elapsed, NameableDiscs, PairEngine, Phase, PlaneWalls, PrescribedMotion, WallTouch, wrapped};
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::{PerParticle, PhysicsFailure, SteeringError, SteppedState};
 use crate::observe::{ObservationSums, SceneProperties};
 use crate::particles::{GrainStates, Particle, Particles};
+use std::sync::Arc;
 use stripmine_kernels::backend::Precision;
 use stripmine_kernels::isa::ProgramError;
 use stripmine_kernels::law::ObservationRequest;
@@ -47,6 +48,9 @@ pub(crate) trait SteppingDiscs: NameableDiscs + PerParticle + Send {
 
     /// Discs at the start.
     fn start(&self) -> &Particles;
+
+    /// Replaces the plane walls by the same walls, joined otherwise and moved, before forces are computed; several ranks have none.
+    fn move_plane_walls(&mut self, _walls: &Arc<PlaneWalls>, _motions: &[PrescribedMotion]) {}
 
     /// Contacts with plane walls when forces were last computed, in the order of the discs' numbers, then of the walls.
     fn wall_touches(&self) -> &[WallTouch] {
@@ -190,6 +194,10 @@ impl<S: Precision, P: Precision, Q: PairSearch<S, P>> SteppingDiscs for PairEngi
 
     fn start(&self) -> &Particles {
         &self.start
+    }
+
+    fn move_plane_walls(&mut self, walls: &Arc<PlaneWalls>, motions: &[PrescribedMotion]) {
+        self.move_walls(walls, motions);
     }
 
     fn wall_touches(&self) -> &[WallTouch] {

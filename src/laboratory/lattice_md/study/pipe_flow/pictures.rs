@@ -111,7 +111,7 @@ pub(super) fn film(flow: &Flow) -> Film {
     let half = half_height(start);
     let frames = shown(flow, FRAMES).map(|(time, particles)| {
         let disc = |disc: &Particle| (disc.planar_position().map(rounded), rounded(disc.omega * disc.radius));
-        FilmFrame { time, discs: particles.grains().iter().map(disc).collect() }
+        FilmFrame { time, walls: vec![], discs: particles.grains().iter().map(disc).collect() }
     });
     Film {
         title: String::new(),

@@ -61,7 +61,7 @@ impl HardDiskSimulation {
     /// As [`Simulation::steer`].
     pub(super) fn make_change(&mut self, change: &Change) -> Result<(), SteeringError> {
         let particles = PerParticle::particles(self);
-        change.check(&particles)?;
+        change.check(&particles, 0)?;
         self.reject_unsuitable(change)?;
         let (time, before) = (self.clock.time, self.energy());
         let mut discs: Vec<FlyingDisc> = self.discs().copied().collect();

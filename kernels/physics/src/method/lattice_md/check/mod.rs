@@ -175,6 +175,7 @@ fn check(mut document: GranularDocument, steps: AcceptedSteps) -> Result<Checked
     let estimates = MotionEstimates::of(&scene, &particles);
     warnings.append(&mut tolerated);
     warnings.extend(wall_checks::gaps(&scene, &domain, &walls, &particles));
+    warnings.extend(wall_checks::light_walls(&scene, &domain, &particles));
     warnings.extend(motion::warnings(&scene, &domain, &particles, (&geometry, &walls), &estimates));
     let alike = all_alike(&particles);
     let left_out = not_modelled(&scene, &particles, &walls, alike);

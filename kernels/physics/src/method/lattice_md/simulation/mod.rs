@@ -180,11 +180,7 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
 
     // The programs are compiled for the quantities that the model needs.
     fn compute_forces(&mut self, _asked: ObservationRequest) -> Result<SweepReport, PhysicsFailure> {
-        let time = self.elapsed.time();
-        self.move_walls(time);
-        if !self.model.walls.are_fixed() {
-            self.arrays.move_plane_walls(&self.model, time);
-        }
+        self.move_walls(self.elapsed.time());
         let mut timings = self.elapsed.timings;
         if self.elapsed.crossings.is_followed() || self.model.is_anchored::<S>() {
             self.anchor.clear();
@@ -273,6 +269,11 @@ impl<S: backend::Precision, P: backend::Precision> SteppingDiscs for LatticeMd<S
 
     fn start(&self) -> &Particles {
         &self.start
+    }
+
+    fn move_plane_walls(&mut self, walls: &Arc<PlaneWalls>, motions: &[PrescribedMotion]) {
+        self.model.walls = walls.clone();
+        self.arrays.move_plane_walls(&self.model, motions);
     }
 
     fn wall_touches(&self) -> &[WallTouch] {

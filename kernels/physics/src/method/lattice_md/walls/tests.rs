@@ -87,7 +87,8 @@ const MANY: &str = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"lattice-
     [[walls]]\nfrom = [2.0, 8.0]\nto = [6.0, 4.0]\nfriction = 0.1\n\
     [[walls]]\nfrom = [6.0, 4.0]\nto = [9.5, 4.5]\nnormal_damping = 9.0\n\
     [[walls]]\nfrom = [0.0, 12.0]\nto = [14.0, 12.0]\nvelocity = [1.5, 0.0]\n\
-    [[walls]]\nfrom = [11.0, 9.0]\nto = [12.0, 2.0]\namplitude = [0.3, 0.1]\nfrequency = 2.0\n";
+    [[walls]]\nfrom = [11.0, 9.0]\nto = [12.0, 2.0]\namplitude = [0.3, 0.1]\nfrequency = 2.0\n\
+    [[walls]]\nside = \"top\"\nmass = 30.0\nforce = [0.0, -40.0]\nfriction = 0.2\n";
 
 /// Every engine, precision and search has the trajectory of the programs up to rounding; executions and threads have its bits.
 #[test]
@@ -140,10 +141,10 @@ fn momentum_goes_to_the_walls() {
         (0..1500).for_each(|_| grains.step().unwrap());
         let now = momentum(&grains);
         let gravity = [0.0, -2.0 * 90.0 * grains.time()];
-        let values = grains.own_values();
-        assert_eq!(values.len(), 6 * 5);
+        let impulses = &grains.wall_sums().impulses;
+        assert_eq!(impulses.len(), 6);
         for axis in 0..2 {
-            let to_walls: f64 = values.chunks(5).map(|wall| wall[axis]).sum();
+            let to_walls: f64 = impulses.iter().map(|wall| wall[axis]).sum();
             let balance = now[axis] - start[axis] - gravity[axis] + to_walls;
             assert!(to_walls.abs() > 1.0 && balance.abs() < 1e-9, "{engine} {axis}: {balance} {to_walls}");
         }
@@ -202,4 +203,121 @@ fn joints_carry_a_disc_once() {
             assert!((force / 6.0 - 1.0).abs() < 1e-9 && x.abs() < 1e-12, "{engine} {ends:?}: {x} {force}");
         }
     }
+}
+
+/// A lid of mass M = 4 that nothing touches falls by F t²/(2M).
+#[test]
+fn free_lid_follows_its_force() {
+    let lid = "\n[[walls]]\nside = \"top\"\nmass = 4.0\nforce = [0.0, -2.0]\n";
+    for engine in ["fast", "programs"] {
+        let mut grains = with_lid([5.0, 1.0], [0.0; 2], lid, engine);
+        (0..1000).for_each(|_| grains.step().unwrap());
+        let [x, y, vx, vy] = grains.own_values()[5..9].try_into().unwrap();
+        let expected = [5.0, 10.0 - 0.5 * 0.5 * 0.01, 0.0, -0.05];
+        let differences = [x, y, vx, vy].into_iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(differences.fold(0.0, f64::max) < 1e-12, "{engine}: {x} {y} {vx} {vy}");
+    }
+}
+
+/// A disc between the floor and a lid under a force F is compressed by F/k at both: the lid rests at 2R − 2F/k, and each wall bears F.
+#[test]
+fn lid_rests_where_springs_balance_its_force() {
+    let lid = "\n[[walls]]\nfrom = [1.0, 1.0]\nto = [9.0, 1.0]\nmass = 2.0\nforce = [0.0, -6.0]\n";
+    for engine in ["fast", "programs"] {
+        let mut grains = with_lid([5.0, 0.5], [0.0; 2], lid, engine);
+        (0..20_000).for_each(|_| grains.step().unwrap());
+        let values = grains.own_values();
+        let [force, height, speed] = [values[3], values[6], values[8]];
+        assert!((height - (1.0 - 12.0 / 2e4)).abs() < 1e-9 && speed.abs() < 1e-9, "{engine}: {height} {speed}");
+        // Lid, left, right, bottom.
+        assert!((force - 6.0).abs() < 1e-6 && (values[9 + 10 + 3] + 6.0).abs() < 1e-6, "{engine}: {values:?}");
+    }
+}
+
+/// A disc of mass m = 2 at speed 1 meets a lid of mass M = 6 at rest: (m − M)/(m + M) = −½ and 2m/(m + M) = ½ follow from momentum and energy.
+#[test]
+fn disc_and_lid_collide_elastically() {
+    let lid = "\n[[walls]]\nfrom = [0.0, 6.0]\nto = [10.0, 6.0]\nmass = 6.0\nforce = [0.0, -1e-9]\n";
+    for engine in ["fast", "programs"] {
+        let mut grains = with_lid([5.0, 5.4], [0.0, 1.0], &lid.replace("1e-9", "0.000000001"), engine);
+        (0..5000).for_each(|_| grains.step().unwrap());
+        let (disc, lid) = (disc(&grains).velocity[1], grains.own_values()[8]);
+        assert!((disc + 0.5).abs() < 1e-4 && (lid - 0.5).abs() < 1e-4, "{engine}: {disc} {lid}");
+    }
+}
+
+/// A lid over many grains: its kinetic energy is the work of its force less its work on the grains, to the order of the step.
+#[test]
+fn lid_exchanges_energy_with_grains() {
+    let lid = "[[walls]]\nfrom = [0.0, 9.0]\nto = [14.0, 9.0]\nmass = 40.0\nforce = [0.0, -30.0]\n";
+    let text = MANY.replace("sides = [14.0, 17.0]", "sides = [14.0, 12.0]").split("[[walls]]").next().unwrap().to_owned();
+    let text = text.replace("count = 90", "count = 60").replace("gravity = [0.0, -2.0]", "gravity = [0.0, 0.0]");
+    let balance = |dt: &str, engine: &str| {
+        let dt_key = format!("integrator.dt={dt}");
+        let mut grains = started(&format!("{text}{lid}"), &[&dt_key, &format!("machine.engine={engine}")]);
+        let steps = (0.3 / dt.parse::<f64>().unwrap()).round() as usize;
+        (0..steps).for_each(|_| grains.step().unwrap());
+        let values = grains.own_values();
+        let [height, speed] = [values[6], values[8]];
+        let work = grains.totals().wall_work;
+        assert!(work.abs() > 1.0, "{work}");
+        (20.0 * speed * speed - 30.0 * (9.0 - height) + work).abs()
+    };
+    for engine in ["fast", "programs"] {
+        let [coarse, fine] = ["2e-4", "5e-5"].map(|dt| balance(dt, engine));
+        assert!(coarse < 2e-2 && fine < 0.15 * coarse, "{engine}: {coarse} {fine}");
+    }
+}
+
+/// Two joined walls part by g = ½: a disc rests on their ends, at the height √(R'² − g²/4) with R' = R − ξ and 2 k ξ cos α = m g.
+#[test]
+fn walls_that_part_have_corners() {
+    let walls = "\n[[walls]]\nfrom = [0.0, 4.0]\nto = [5.0, 4.0]\n[[walls]]\nfrom = [5.0, 4.0]\nto = [10.0, 4.0]\n";
+    let at_height = |depth: f64| ((0.5 - depth) * (0.5 - depth) - 0.0625f64).sqrt();
+    let mut depth = 0.0;
+    (0..50).for_each(|_| depth = 6.0 * (0.5 - depth) / at_height(depth) / 4e4);
+    for engine in ["fast", "programs"] {
+        let mut grains = with_walls(([5.25, 4.6], [0.0; 2], [0.0, -3.0]), walls, engine);
+        grains.set_wall_velocities(&[[0.0; 2], [5.0, 0.0]]);
+        (0..1000).for_each(|_| grains.step().unwrap());
+        grains.set_wall_velocities(&[[0.0; 2]; 2]);
+        (0..20_000).for_each(|_| grains.step().unwrap());
+        let [x, y, _] = disc(&grains).position;
+        assert!((x - 5.25).abs() < 1e-9 && (y - 4.0 - at_height(depth)).abs() < 1e-9, "{engine}: {x} {y}");
+    }
+}
+
+/// A wall moves on from where it is when its velocity is changed.
+#[test]
+fn walls_change_their_velocity() {
+    let walls = "\n[[walls]]\nfrom = [2.0, 4.0]\nto = [8.0, 4.0]\nvelocity = [0.5, 0.0]\n";
+    for engine in ["fast", "programs"] {
+        let mut grains = with_lid([7.0, 5.0], [0.0; 2], walls, engine);
+        (0..10_000).for_each(|_| grains.step().unwrap());
+        grains.set_wall_velocities(&[[-1.0, -0.25]]);
+        (0..10_000).for_each(|_| grains.step().unwrap());
+        let found = &grains.own_values()[5..9];
+        let differences = found.iter().zip([4.5, 3.75, -1.0, -0.25]).map(|(a, b)| (a - b).abs());
+        assert!(differences.fold(0.0, f64::max) < 1e-9, "{engine}: {found:?}");
+    }
+}
+
+/// One disc in a closed box without gravity.
+fn with_lid(position: [f64; 2], velocity: [f64; 2], walls: &str, engine: &str) -> SteppedGrains {
+    with_walls((position, velocity, [0.0; 2]), walls, engine)
+}
+
+/// One disc in a closed box, with damping where it starts at rest.
+fn with_walls(
+    (position, velocity, gravity): ([f64; 2], [f64; 2], [f64; 2]),
+    walls: &str,
+    engine: &str,
+) -> SteppedGrains {
+    let damping = if velocity == [0.0; 2] { "normal_damping = 100.0" } else { "" };
+    let mut text = DISC.replace("KEYS", damping);
+    for (name, value) in [("GX", gravity[0]), ("GY", gravity[1]), ("VX", velocity[0]), ("VY", velocity[1])] {
+        text = text.replace(name, &format!("{value:?}"));
+    }
+    let text = text.replace("X", &format!("{:?}", position[0])).replace("Y", &format!("{:?}", position[1]));
+    started(&format!("{text}{walls}"), &[&format!("machine.engine={engine}")])
 }

@@ -1,6 +1,7 @@
 //! Contacts of discs with plane walls.
 
 use super::PlaneWalls;
+use crate::method::pairwise::PrescribedMotion;
 use crate::particles::Particles;
 use stripmine_kernels::isa::Element;
 use stripmine_kernels::law::Law;
@@ -60,16 +61,16 @@ pub(crate) fn touching_disc<P: Element>(
     }
 }
 
-/// Lists the contacts of all grains with all walls at a time, by testing every grain against every piece, in double precision, each with its
+/// Lists the contacts of all grains with all moved walls, by testing every grain against every piece, in double precision, each with its
 /// point (length). The disc of a contact is its number in the scene.
 pub(crate) fn each_touch<L: Law<2> + Sync>(
     law: &L,
     walls: &PlaneWalls,
     particles: &Particles,
     wrapped: impl Fn([f64; 2]) -> [f64; 2] + Sync,
-    time: f64,
+    motions: &[PrescribedMotion],
 ) -> Vec<(WallTouch, [f64; 2])> {
-    let (pieces, surfaces, images) = (walls.pieces_at(time), walls.surfaces_at(time), walls.images());
+    let (pieces, surfaces, images) = (walls.pieces_at(motions), walls.surfaces_at(motions), walls.images());
     let parts = over_parts(0..particles.grain_count(), |grains| {
         let mut found = vec![];
         for (number, grain) in grains.clone().zip(&particles.grains()[grains]) {

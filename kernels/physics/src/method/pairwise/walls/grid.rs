@@ -1,6 +1,7 @@
 //! Elements of plane walls, found by the cell of a disc.
 
-use super::PlaneWalls;
+use super::{PlaneWalls, WallTracks};
+use crate::method::pairwise::PrescribedMotion;
 use std::sync::Arc;
 use stripmine_kernels::isa::Element;
 use stripmine_kernels::sweep::fast::CellGrid;
@@ -26,30 +27,33 @@ pub(crate) struct WallGrid<P> {
     /// Number of the first element of each cell, from 1; 0 without elements.
     first: Vec<u32>,
     elements: Vec<GridElement<P>>,
-    /// Time of the elements.
-    time: f64,
+    /// Motions of the walls of the elements.
+    motions: Vec<PrescribedMotion>,
 }
 
 impl<P: Element> WallGrid<P> {
     /// Elements at the start, for discs that may be `margin` outside their cells (length).
     pub(crate) fn new(walls: Arc<PlaneWalls>, grid: CellGrid, margin: f64) -> WallGrid<P> {
         let first = vec![0; grid.counts[0] * grid.counts[1]];
-        let mut made = WallGrid { walls, grid, margin, first, elements: vec![], time: 0.0 };
-        made.place(0.0);
+        let motions = WallTracks::new(&walls).now().to_vec();
+        let mut made = WallGrid { walls, grid, margin, first, elements: vec![], motions };
+        made.place();
         made
     }
 
-    /// Moves the walls to a time.
-    pub(crate) fn update(&mut self, time: f64) {
-        if time != self.time && !self.walls.are_fixed() {
-            self.place(time);
+    /// Replaces the walls by the same walls, joined otherwise and moved.
+    pub(crate) fn move_walls(&mut self, walls: &Arc<PlaneWalls>, motions: &[PrescribedMotion]) {
+        if motions != self.motions || !Arc::ptr_eq(walls, &self.walls) {
+            self.walls = walls.clone();
+            self.motions.copy_from_slice(motions);
+            self.place();
         }
     }
 
-    fn place(&mut self, time: f64) {
+    fn place(&mut self) {
         self.elements.iter().for_each(|element| self.first[element.cell as usize] = 0);
-        let surfaces = self.walls.surfaces_at(time);
-        let found = elements(&self.grid, &self.walls.pieces_at(time), self.walls.reach(), self.margin);
+        let surfaces = self.walls.surfaces_at(&self.motions);
+        let found = elements(&self.grid, &self.walls.pieces_at(&self.motions), self.walls.reach(), self.margin);
         self.elements = found
             .into_iter()
             .map(|found| {
@@ -62,7 +66,6 @@ impl<P: Element> WallGrid<P> {
         for (at, element) in self.elements.iter().enumerate().rev() {
             self.first[element.cell as usize] = at as u32 + 1;
         }
-        self.time = time;
     }
 
     fn number(&self, [column, row]: [usize; 2]) -> usize {

@@ -2,49 +2,16 @@
 
 mod contacts;
 mod grid;
+mod motion;
 
 pub(crate) use contacts::{WallTouch, each_touch, touching_disc};
 pub(crate) use grid::WallGrid;
+pub(crate) use motion::WallTracks;
+pub use motion::{PlaneMotion, WallDrive};
 
 use super::PrescribedMotion;
 use crate::domain::Domain;
 use stripmine_kernels::sweep::walls::{PieceShape, WallPiece, WallSurface, pieces};
-
-/// Motion of a plane wall: r(t) = r(0) + v t + a sin(2π f t).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PlaneMotion {
-    /// Velocity v (length/time).
-    pub velocity: [f64; 2],
-    /// Amplitude a (length).
-    pub amplitude: [f64; 2],
-    /// Frequency f (1/time).
-    pub frequency: f64,
-}
-
-impl PlaneMotion {
-    /// True if the wall is at rest.
-    pub(crate) fn is_fixed(&self) -> bool {
-        *self == PlaneMotion { frequency: self.frequency, ..PlaneMotion::default() }
-    }
-
-    /// Displacement and velocity at a time.
-    pub(crate) fn at(&self, time: f64) -> PrescribedMotion {
-        let PlaneMotion { velocity: v, amplitude: a, frequency } = *self;
-        let rate = std::f64::consts::TAU * frequency;
-        // Portable sine and cosine give the same bits on every platform.
-        let (sine, cosine) = (libm::sin(rate * time), libm::cos(rate * time));
-        PrescribedMotion {
-            displacement: [0, 1].map(|axis| v[axis] * time + a[axis] * sine),
-            velocity: [0, 1].map(|axis| v[axis] + a[axis] * rate * cosine),
-        }
-    }
-
-    /// Largest speed (length/time).
-    pub(crate) fn fastest(&self) -> f64 {
-        let rate = std::f64::consts::TAU * self.frequency;
-        self.velocity[0].hypot(self.velocity[1]) + rate * self.amplitude[0].hypot(self.amplitude[1])
-    }
-}
 
 /// Plane wall: a segment with its motion and its coefficients in the contact law.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,9 +49,16 @@ impl PlaneWalls {
     /// Walls in a box, for discs of radii up to `reach` (length). Ends of walls of one motion that are much closer than this are one point.
     pub(crate) fn new(walls: Vec<PlaneWall>, domain: &Domain, reach: f64) -> PlaneWalls {
         let periods = [0, 1].map(|axis| domain.is_periodic(axis).then(|| domain.length(axis)));
-        let segments: Vec<[[f64; 2]; 2]> = walls.iter().map(|wall| wall.ends).collect();
-        let pieces = pieces(&segments, periods, JOINED * reach, |a, b| walls[a].motion == walls[b].motion);
-        PlaneWalls { walls, pieces, periods, corner: domain.corner(), reach }
+        let walls = PlaneWalls { walls, pieces: vec![], periods, corner: domain.corner(), reach };
+        walls.joined(&WallTracks::new(&walls))
+    }
+
+    /// The same walls, joined where ends coincide and keep their distance along these tracks.
+    pub(crate) fn joined(&self, tracks: &WallTracks) -> PlaneWalls {
+        let segments: Vec<[[f64; 2]; 2]> = self.walls.iter().map(|wall| wall.ends).collect();
+        let are_joined = |a: usize, b: usize| a == b || tracks.keep_distance(a, b);
+        let pieces = pieces(&segments, self.periods, JOINED * self.reach, are_joined);
+        PlaneWalls { pieces, ..self.clone() }
     }
 
     /// True without walls.
@@ -102,17 +76,10 @@ impl PlaneWalls {
         &self.walls
     }
 
-    /// True if no wall moves.
-    pub(crate) fn are_fixed(&self) -> bool {
-        self.walls.iter().all(|wall| wall.motion.is_fixed())
-    }
-
-    /// Pieces at a time, their middles inside the box along periodic sides.
-    pub(crate) fn pieces_at(&self, time: f64) -> Vec<WallPiece> {
-        let moved = self.walls.iter().map(|wall| wall.motion.at(time).displacement);
-        let moved: Vec<[f64; 2]> = moved.collect();
+    /// Pieces of moved walls, their middles inside the box along periodic sides.
+    pub(crate) fn pieces_at(&self, motions: &[PrescribedMotion]) -> Vec<WallPiece> {
         let at = |piece: &WallPiece| {
-            let piece = piece.moved(moved[piece.wall as usize]);
+            let piece = piece.moved(motions[piece.wall as usize].displacement);
             let [a, b] = match piece.shape {
                 PieceShape::Inside { ends, .. } => ends,
                 PieceShape::Corner { at, .. } => [at; 2],
@@ -125,22 +92,22 @@ impl PlaneWalls {
         self.pieces.iter().map(at).collect()
     }
 
-    /// Middle of a wall at a time (length).
-    pub(crate) fn middle_at(&self, wall: usize, time: f64) -> [f64; 2] {
-        let PlaneWall { ends: [a, b], motion, .. } = &self.walls[wall];
-        let moved = motion.at(time).displacement;
+    /// Middle of a moved wall (length).
+    pub(crate) fn middle_at(&self, wall: usize, motions: &[PrescribedMotion]) -> [f64; 2] {
+        let [a, b] = self.walls[wall].ends;
+        let moved = motions[wall].displacement;
         [0, 1].map(|axis| 0.5 * (a[axis] + b[axis]) + moved[axis])
     }
 
-    /// Surfaces of all walls at a time.
-    pub(crate) fn surfaces_at(&self, time: f64) -> Vec<WallSurface> {
-        let at = |wall: &PlaneWall| WallSurface {
-            velocity: wall.motion.at(time).velocity,
+    /// Surfaces of all moved walls.
+    pub(crate) fn surfaces_at(&self, motions: &[PrescribedMotion]) -> Vec<WallSurface> {
+        let at = |(wall, motion): (&PlaneWall, &PrescribedMotion)| WallSurface {
+            velocity: motion.velocity,
             normal_damping: wall.normal_damping,
             shear_damping: wall.shear_damping,
             friction: wall.friction,
         };
-        self.walls.iter().map(at).collect()
+        self.walls.iter().zip(motions).map(at).collect()
     }
 
     /// Vectors from the box to its images that a disc inside the box may touch (length).

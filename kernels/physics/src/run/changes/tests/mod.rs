@@ -29,6 +29,7 @@ fn advance(simulation: &mut dyn Simulation, until: Until) {
 const GRAVITY: SteeredQuantity = SteeredQuantity::Gravity;
 const VELOCITIES: SteeredQuantity = SteeredQuantity::Velocities;
 const BATH: SteeredQuantity = SteeredQuantity::BathTemperature;
+const WALL_VELOCITIES: SteeredQuantity = SteeredQuantity::WallVelocities;
 
 fn at(steps: u64) -> Clock {
     Clock { steps, time: 0.1 * steps as f64, events: 0 }

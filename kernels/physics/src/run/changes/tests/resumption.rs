@@ -1,6 +1,7 @@
 //! Runs that were changed, interrupted and resumed; simulations that were saved.
 
-use super::{BATH, GRAVITY, NEVER, VELOCITIES, advance, change, prepared, started};
+use super::{BATH, GRAVITY, NEVER, VELOCITIES, WALL_VELOCITIES, advance, change, prepared, started};
+use crate::io::FORMATS;
 use crate::method::{Change, METHODS, MethodEntry, ObservedQuantity, Prepared, Simulation, Until};
 use crate::origin::Origin;
 use crate::run::{ExistingRun, RunInProgress, RunJob, run};
@@ -11,7 +12,7 @@ use std::path::Path;
 /// Quantities of the method of a scene.
 fn quantities(prepared: &Prepared) -> &'static [ObservedQuantity] {
     let is_method = |it: &&&MethodEntry| prepared.scene.contains(&format!("{:?}", it.vocabulary.keys.method));
-    METHODS.iter().find(is_method).unwrap().quantities
+    prepared.quantities(METHODS.iter().find(is_method).unwrap())
 }
 
 const PROGRAM: fn() -> Origin = || Origin {
@@ -23,7 +24,7 @@ const PROGRAM: fn() -> Origin = || Origin {
 
 /// Files of a run that hold results.
 fn results(folder: &Path) -> BTreeMap<&'static str, Vec<u8>> {
-    let names = ["thermo.csv", "trajectory.xyz", "changes.csv"];
+    let names = ["thermo.csv", FORMATS[0].file, "changes.csv"];
     names.into_iter().map(|name| (name, fs::read(folder.join(name)).unwrap())).collect()
 }
 
@@ -104,6 +105,11 @@ fn resumed_runs_repeat_changes_to_the_bit() {
             (Until::Events(150), change(VELOCITIES, &speeds)),
         ]
     };
+    let of_walls = || {
+        let velocities = |values: &[f64]| change(WALL_VELOCITIES, values);
+        of_steps([velocities(&[-2.0, 0.1, 0.5, 0.0]), velocities(&[0.3, 0.0, 0.3, 0.0])])
+    };
+    let of_lid = || of_steps([change(GRAVITY, &[0.5, -1.0]), change(GRAVITY, &[0.0, -2.0])]);
     let near = "particles.positions=[[3.0, 4.0], [4.02, 4.25]]";
     type Scene<'s> = (&'s str, Vec<&'s str>, Vec<(Until, Change)>);
     let scenes: Vec<Scene<'_>> = vec![
@@ -119,6 +125,9 @@ fn resumed_runs_repeat_changes_to_the_bit() {
             [&discs[..], &[near, "domain.periodic=[true, true]", "machine.precision=f32"]].concat(),
             of_discs(),
         ),
+        ("shear-cell", discs.to_vec(), of_walls()),
+        ("shear-cell", [&discs[..], &["machine.engine=programs"]].concat(), of_walls()),
+        ("piston", discs.to_vec(), of_lid()),
         ("langevin-dense", [&steps[..], &bath].concat(), of_bath()),
         (
             "langevin-dense",
