@@ -261,7 +261,7 @@ fn scene_check_forecasts_limits_and_errors() {
     let output = stripmine(&["run", "two-discs", "--set", "run.steps=100", "--out", out.to_str().unwrap()]);
     let text = said(&output);
     for word in
-        ["expected: drag of friction: at most", "expected: error of a contact", "expected: time of a run"]
+        ["expected: drag of friction: dt is", "expected: error of a contact", "expected: time of a run"]
     {
         assert!(text.contains(word), "{text}");
     }

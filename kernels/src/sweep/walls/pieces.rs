@@ -169,7 +169,7 @@ mod tests {
         assert!(!corners(&star, none).contains(&[0.0; 2]));
     }
 
-    /// Of three segments on one side of a point the two outermost bound the corner.
+    /// The two outermost of three segments on one side of a point bound the corner.
     #[test]
     fn corners_are_bounded_by_the_outermost_segments() {
         let [low, middle, high] = [[1.0, 0.0], [0.6, 0.8], [0.0, 1.0]];

@@ -58,7 +58,7 @@ enum PairTableMistake {
 }
 
 /// Row of a table.
-struct TableRow {
+struct PotentialRow {
     line: usize,
     r: f64,
     energy: f64,
@@ -114,10 +114,10 @@ impl PairTable {
 }
 
 /// Rows of a text, each with its line.
-fn rows(text: &str) -> Result<Vec<TableRow>, (usize, PairTableMistake)> {
+fn rows(text: &str) -> Result<Vec<PotentialRow>, (usize, PairTableMistake)> {
     const EXPECTED: [&str; 2] = ["r and U, or r, U and F = -dU/dr", "as many as the row before"];
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rows: Vec<TableRow> = vec![];
+    let mut rows: Vec<PotentialRow> = vec![];
     let mut is_first = true;
     for (line, content) in (1..).zip(text.lines()) {
         let content = content.split('#').next().unwrap_or_default().trim();
@@ -144,13 +144,13 @@ fn rows(text: &str) -> Result<Vec<TableRow>, (usize, PairTableMistake)> {
         if rows.first().is_some_and(|first| first.force.is_some() != force.is_some()) {
             return Err((line, PairTableMistake::Fields { found: numbers.len(), expected: EXPECTED[1] }));
         }
-        rows.push(TableRow { line, r, energy, force });
+        rows.push(PotentialRow { line, r, energy, force });
     }
     Ok(rows)
 }
 
 /// Compares stated forces with those of the potential.
-fn check_forces(rows: &[TableRow], potential: &Tabulated) -> Result<(), (usize, PairTableMistake)> {
+fn check_forces(rows: &[PotentialRow], potential: &Tabulated) -> Result<(), (usize, PairTableMistake)> {
     let Some(forces) = rows.iter().map(|row| row.force).collect::<Option<Vec<f64>>>() else { return Ok(()) };
     let largest = |forces: &[f64]| forces.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
     let floor = ROUNDING * largest(&forces);

@@ -11,7 +11,7 @@ use stripmine_kernels::sweep::fast::CellGrid;
 use stripmine_kernels::sweep::lattice::Coordinates;
 use stripmine_kernels::sweep::walls::{ELEMENT_NUMBERS, TouchingDisc, WALL_ARRAYS, elements, touch};
 
-/// How far a position may be rounded out of its cell, relative to the cell.
+/// Largest distance by which a position is rounded out of its cell, relative to the cell.
 const BESIDE: f64 = 1e-3;
 
 /// Elements of the plane walls now.

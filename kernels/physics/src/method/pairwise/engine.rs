@@ -28,7 +28,7 @@ const FEW: usize = 5000;
 /// Dynamics, system, and the instruction set of their loops.
 pub(super) type EngineParts<S, P, Q> = (Arc<dyn CompiledDynamics<S, P, Q>>, PairSystem, InstructionSet);
 
-/// How far a position may be rounded out of its cell, relative to the cell.
+/// Largest distance by which a position is rounded out of its cell, relative to the cell.
 const BESIDE: f64 = 1e-3;
 
 /// Alignment number of the sums; columns of the state have smaller ones.

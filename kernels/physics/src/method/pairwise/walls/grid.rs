@@ -22,7 +22,7 @@ pub(crate) struct GridElement<P> {
 pub(crate) struct WallGrid<P> {
     walls: Arc<PlaneWalls>,
     grid: CellGrid,
-    /// How far a disc may be outside its cell (length).
+    /// Largest distance of a disc from its cell (length).
     margin: f64,
     /// Number of the first element of each cell, from 1; 0 without elements.
     first: Vec<u32>,
