@@ -10,6 +10,8 @@ const FEWEST: usize = 5;
 const MOST: usize = 65_536;
 /// Distance of a row from its place among equally spaced ones, relative to their gap, up to which it counts as there.
 const EQUAL: f64 = 1e-6;
+/// Row of pairs beyond the end.
+const BEYOND: [f64; LawTable::COLUMNS] = [0.0; LawTable::COLUMNS];
 
 /// Pair potential through rows of r and U, cubic in each interval, with a continuous force (piecewise cubic Hermite).
 ///
@@ -40,7 +42,8 @@ pub struct Tabulated {
     /// Width of an interval (length), and intervals per length.
     width: f64,
     per_length: f64,
-    /// A row for each interval: U at its beginning, and the coefficients of F as a polynomial of the fraction of the interval.
+    /// A row for each interval: U at its beginning, and the coefficients of F as a polynomial of the fraction of the interval. A row of zeros
+    /// follows, for pairs beyond the end.
     table: LawTable,
 }
 
@@ -87,7 +90,7 @@ pub enum TabulatedError {
 /// No energy up to a distance of 1.
 impl Default for Tabulated {
     fn default() -> Self {
-        let table = LawTable::new(vec![[0.0; LawTable::COLUMNS]]);
+        let table = LawTable::new(vec![BEYOND; 2]);
         Tabulated { ends: [0.0, 1.0], width: 1.0, per_length: 1.0, table }
     }
 }
@@ -136,7 +139,7 @@ impl Tabulated {
             let rise = (right - left) / width;
             [left, -from, -2.0 * (3.0 * rise - (2.0 * from + to)), -3.0 * (from + to - 2.0 * rise)]
         };
-        let table = LawTable::new((0..intervals).map(interval).collect());
+        let table = LawTable::new((0..intervals).map(interval).chain([BEYOND]).collect());
         Ok(Tabulated { ends, width, per_length: intervals as f64 / length, table })
     }
 
@@ -152,10 +155,16 @@ impl Tabulated {
         Tabulated { table: LawTable::new(rows.collect()), ..self.clone() }
     }
 
+    /// Rows of the intervals.
+    fn intervals(&self) -> &[[f64; LawTable::COLUMNS]] {
+        let rows = self.table.rows();
+        &rows[..rows.len() - 1]
+    }
+
     /// Coefficients of the interval of a distance, and the fraction of the interval; none outside the table.
     fn interval(&self, distance: f64) -> Option<([f64; LawTable::COLUMNS], f64)> {
         let along = (distance - self.ends[0]) * self.per_length;
-        let rows = self.table.rows();
+        let rows = self.intervals();
         let number = (along as usize).min(rows.len() - 1);
         (distance >= self.ends[0] && distance < self.ends[1]).then(|| (rows[number], along - number as f64))
     }
@@ -190,7 +199,7 @@ impl PairPotential for Tabulated {
     #[inline(always)]
     fn swept_force<E: Env<2>>(&self, env: E, square: E::V) -> (E::V, [E::V; 5]) {
         let distance = square.sqrt();
-        // Pairs beyond the last row read the last interval, and their force is dropped.
+        // Pairs beyond the end read the row of zeros.
         let last = env.uniform(self.table.rows().len() as f64 + 0.5);
         let along = (distance - env.uniform(self.ends[0])) * env.uniform(self.per_length) + env.uniform(1.0);
         let along = along.min(last);
@@ -216,12 +225,12 @@ impl PairPotential for Tabulated {
     fn stiffness(&self, nearest: f64) -> f64 {
         let first = ((nearest - self.ends[0]) * self.per_length).max(0.0) as usize;
         let ends = |[_, _, b, c]: &[f64; LawTable::COLUMNS]| b.abs().max((b + 2.0 * c).abs());
-        self.table.rows().iter().skip(first).map(ends).fold(0.0, f64::max) * self.per_length
+        self.intervals().iter().skip(first).map(ends).fold(0.0, f64::max) * self.per_length
     }
 
     /// Distance at which a pair that comes from beyond the table turns; the first row if it passes all of them, 0 if that is at 0.
     fn closest(&self, energy: f64) -> f64 {
-        let Some(number) = self.table.rows().iter().rposition(|row| row[0] >= energy) else {
+        let Some(number) = self.intervals().iter().rposition(|row| row[0] >= energy) else {
             return self.ends[0];
         };
         let end = |number: usize| self.ends[0] + number as f64 * self.width;

@@ -2,7 +2,7 @@
 
 use super::window;
 use std::path::Path;
-use stripmine_physics::io::table_file::TableReader;
+use stripmine_physics::run::TableReader;
 
 /// Plane walls of a run.
 #[derive(Default)]
@@ -141,11 +141,8 @@ fn walls(scene: &toml::Table) -> &[toml::Value] {
 fn middles(run: &Path, label: &str) -> Option<Vec<(f64, [f64; 2])>> {
     let mut table = TableReader::open(&run.join("thermo.csv")).ok()?;
     let column = |name: String| table.columns().iter().position(|column| *column == name);
-    let [time, x, y] = [
-        column("time".to_owned())?,
-        column(format!("wall_{label}_x"))?,
-        column(format!("wall_{label}_y"))?,
-    ];
+    let [time, x, y] =
+        [column("time".to_owned())?, column(format!("wall_{label}_x"))?, column(format!("wall_{label}_y"))?];
     let mut rows = vec![];
     while let Ok(Some(row)) = table.next_row() {
         rows.push((row[time], [row[x], row[y]]));
@@ -204,7 +201,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let rows = "step,time,wall_top_x,wall_top_y\n0,0.0,2.0,6.0\n10,1.0,2.0,5.0\n20,2.0,2.0,3.0\n";
         std::fs::write(folder.path().join("thermo.csv"), rows).unwrap();
-        let scene = "[domain]\nsides = [4.0, 6.0]\n[[walls]]\nside = \"top\"\nmass = 1.0\nforce = [0.0, -1.0]\n";
+        let scene =
+            "[domain]\nsides = [4.0, 6.0]\n[[walls]]\nside = \"top\"\nmass = 1.0\nforce = [0.0, -1.0]\n";
         let scene: toml::Table = scene.parse().unwrap();
         let walls = WallSegments::of_run(folder.path(), Some(&scene));
         for (time, height) in [(0.0, 6.0), (0.5, 5.5), (1.0, 5.0), (1.5, 4.0), (9.0, 3.0)] {

@@ -46,8 +46,20 @@ const KINDS: [(&str, &str, &str, QuantityKind, &str); 11] = [
     ),
     ("wall", "x", "length", QuantityKind::Instant, "Middle of a plane wall that moves, along x."),
     ("wall", "y", "length", QuantityKind::Instant, "Middle of a plane wall that moves, along y."),
-    ("wall", "velocity_x", "length/time", QuantityKind::Instant, "Velocity of a plane wall that moves, along x."),
-    ("wall", "velocity_y", "length/time", QuantityKind::Instant, "Velocity of a plane wall that moves, along y."),
+    (
+        "wall",
+        "velocity_x",
+        "length/time",
+        QuantityKind::Instant,
+        "Velocity of a plane wall that moves, along x.",
+    ),
+    (
+        "wall",
+        "velocity_y",
+        "length/time",
+        QuantityKind::Instant,
+        "Velocity of a plane wall that moves, along y.",
+    ),
 ];
 
 /// Labels of things without a number.
@@ -126,7 +138,8 @@ mod tests {
         let method = METHODS.iter().find(|method| method.vocabulary.keys.method == "lattice-md").unwrap();
         let own = names_of("wall", "12", true);
         assert!(
-            own.contains(&"wall_12_torque".to_owned()) && names_of("wall", "top", false)[2] == "wall_top_force_x"
+            own.contains(&"wall_12_torque".to_owned())
+                && names_of("wall", "top", false)[2] == "wall_top_force_x"
         );
         let columns = |own: &[String]| -> Vec<String> {
             let all = method.quantities.iter().map(|it| it.name.to_owned());

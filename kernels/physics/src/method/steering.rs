@@ -93,7 +93,10 @@ impl Change {
         if *quantity == SteeredQuantity::WallVelocities {
             if walls == 0 {
                 let remedy = "start another scene with [[walls]]";
-                return Err(SteeringError::refused(format!("the scene has no [[walls]], so no {name}"), remedy));
+                return Err(SteeringError::refused(
+                    format!("the scene has no [[walls]], so no {name}"),
+                    remedy,
+                ));
             }
             if values.len() != 2 * walls {
                 let reason = format!("{name} has {} values, which do not fit {walls} walls", values.len());
@@ -117,7 +120,9 @@ impl Change {
         };
         let place = |at: usize| match quantity {
             SteeredQuantity::BathTemperature => name.to_owned(),
-            SteeredQuantity::Velocities | SteeredQuantity::WallVelocities => format!("{name}[{}, {}]", at / width, at % width),
+            SteeredQuantity::Velocities | SteeredQuantity::WallVelocities => {
+                format!("{name}[{}, {}]", at / width, at % width)
+            }
             _ => format!("{name}[{at}]"),
         };
         if let Some(at) = values.iter().position(|value| !value.is_finite()) {

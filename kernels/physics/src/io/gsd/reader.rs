@@ -9,7 +9,7 @@ use super::{
 use crate::io::extxyz::ParticleFrame;
 use crate::io::regular_file;
 use crate::io::species::kind_and_species;
-use crate::particles::{Particle, ParticleKind, Particles};
+use crate::particles::{Particle, Particles};
 use std::collections::HashSet;
 use std::fs::{File, Metadata};
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -289,7 +289,8 @@ impl Chunks<'_> {
         let [angle, omega] =
             [self.numbers(ANGLE, (count, 1), false)?, self.numbers(OMEGA, (count, 1), false)?];
         if let Some(row) = kinds.iter().position(|&kind| kind > 1 + u32::from(u8::MAX)) {
-            let (found, expected) = (kinds[row].to_string(), "1 (a wall disc), or a species of grains: 0, or 2 to 256");
+            let (found, expected) =
+                (kinds[row].to_string(), "1 (a wall disc), or a species of grains: 0, or 2 to 256");
             return Err(self.wrong(TYPE, GsdErrorKind::Number { row, found, expected }));
         }
         let mut seen = HashSet::with_capacity(count);

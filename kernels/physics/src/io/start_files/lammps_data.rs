@@ -6,7 +6,7 @@ use super::{
     particle_of_type,
 };
 use crate::io::lammps::{DATA_HEADING, mass_of_sphere};
-use crate::particles::{Particle, ParticleKind, Particles};
+use crate::particles::{Particle, Particles};
 use std::collections::HashMap;
 use std::path::Path;
 

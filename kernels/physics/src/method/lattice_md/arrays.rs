@@ -42,7 +42,7 @@ impl Lengths {
             swept: shape.swept(),
             padded: shape.padded(),
             halo: shape.images().len(),
-            walls: LatticeWalls::<f64>::new(model, 0.0).runs(),
+            walls: LatticeWalls::<f64>::new(model, WallTracks::new(&model.walls).now()).runs(),
         }
     }
 

@@ -169,12 +169,7 @@ impl SteppedGrains {
         let met = self.stepping.compute_forces(self.model.asked())?;
         self.met = met.pairs;
         let touches = self.stepping.wall_touches();
-        check_contact_depths(
-            self.stepping.as_ref(),
-            (&met.deep, touches),
-            &self.model,
-            &mut self.totals,
-        )?;
+        check_contact_depths(self.stepping.as_ref(), (&met.deep, touches), &self.model, &mut self.totals)?;
         let at_walls: f64 = match self.model.counts_dissipation() {
             true => touches.iter().map(|touch| touch.power).sum(),
             false => 0.0,

@@ -93,9 +93,8 @@ impl Startable for CheckedGranularScene {
     }
 
     fn own_quantities(&self) -> Vec<String> {
-        let of_walls = self.walls.all().iter().flat_map(|wall| {
-            names_of("wall", &wall.label, !wall.motion.is_fixed())
-        });
+        let of_walls =
+            self.walls.all().iter().flat_map(|wall| names_of("wall", &wall.label, !wall.motion.is_fixed()));
         let lines = 1..=self.scene.plane.lines.len();
         of_walls.chain(lines.flat_map(|line| names_of("flux", &line.to_string(), false))).collect()
     }

@@ -132,7 +132,10 @@ impl Stepped<GranularRun> {
                 ("which a force drives".to_owned(), "leave its row [0, 0]".to_owned())
             } else if speed > limit {
                 let (speed, limit) = (significant(speed, 5), significant(limit, 5));
-                (format!("at up to {speed}: it could pass discs between two steps"), format!("keep it below {limit}"))
+                (
+                    format!("at up to {speed}: it could pass discs between two steps"),
+                    format!("keep it below {limit}"),
+                )
             } else {
                 continue;
             };

@@ -117,7 +117,12 @@ fn long_step(at: Clock, count: u64, first: Culprit, limit: f64, dt: f64) -> Phys
 }
 
 /// Failure of a disc that has entered a plane wall too deeply.
-fn too_deep_in_wall(at: Clock, disc: Culprit, (touch, wall): (&WallTouch, &str), limit: f64) -> PhysicsFailure {
+fn too_deep_in_wall(
+    at: Clock,
+    disc: Culprit,
+    (touch, wall): (&WallTouch, &str),
+    limit: f64,
+) -> PhysicsFailure {
     let what = format!(
         "{disc} has entered {wall} by {} of its radius, more than law.stop_penetration = {limit}",
         significant(touch.penetration, 4)

@@ -113,10 +113,18 @@ fn ends_mistake(wall: &SceneWall, domain: &Domain, is_repeated: bool) -> Option<
     if let Some(side) = wall.side {
         let axis = side.axis();
         return if wall.ends != [None; 2] {
-            WallMistake::new(Contradiction, "has `from` or `to` beside `side`", "leave out `from` and `to`, or `side`")
+            WallMistake::new(
+                Contradiction,
+                "has `from` or `to` beside `side`",
+                "leave out `from` and `to`, or `side`",
+            )
         } else if domain.is_periodic(axis) {
             let message = format!("is periodic along {}: there is no wall", axes[axis]);
-            WallMistake::new(Contradiction, message, "close the side in domain.periodic, or give `from` and `to`")
+            WallMistake::new(
+                Contradiction,
+                message,
+                "close the side in domain.periodic, or give `from` and `to`",
+            )
         } else if is_repeated {
             WallMistake::new(Contradiction, "is given twice", "leave out one of the two tables")
         } else {
@@ -287,7 +295,8 @@ pub(super) fn gaps(
     let Some([smallest, _]) = particles.radii() else { return vec![] };
     let list = &scene.plane.list;
     let stated = list.iter().enumerate().filter(|(_, wall)| wall.side.is_none());
-    let ends = stated.flat_map(|(number, wall)| wall.ends.into_iter().flatten().map(move |end| (number, end)));
+    let ends =
+        stated.flat_map(|(number, wall)| wall.ends.into_iter().flatten().map(move |end| (number, end)));
     let gap = |(number, end): (usize, [f64; 2])| {
         let others = walls.all().iter().enumerate().filter(move |(other, _)| *other != number);
         let nearest =

@@ -4,8 +4,8 @@ use super::compiled::{CompiledDynamics, CorrectionArguments, PassArguments, Swee
 use super::search::{PairSearch, SearchCells};
 use super::state::{CellMove, Members, MovingDiscs, StepEndRow};
 use super::{
-    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PlaneWalls, PrescribedMotion, SortSchedule, WallGrid,
-    WallTouch, not_finite,
+    Crossings, Elapsed, NameableDiscs, PairSystem, Phase, PlaneWalls, PrescribedMotion, SortSchedule,
+    WallGrid, WallTouch, not_finite,
 };
 use crate::domain::Domain;
 use crate::method::{Clock, PhysicsFailure};

@@ -47,8 +47,8 @@ pub(crate) use state_form::{CarriedQuery, CarriedState};
 pub(crate) use stepping::{GravityWork, RemovableDiscs, SteppingDiscs};
 pub use timings::{HaloTraffic, Phase, Timings};
 pub(crate) use unwrapped::{unwrapped, wrapped};
-pub use walls::{PlaneMotion, PlaneWall, PlaneWalls, WallDrive};
-pub(crate) use walls::{WallGrid, WallTouch, WallTracks, each_touch, touching_disc};
+pub use walls::{PlaneMotion, PlaneWall, PlaneWalls};
+pub(crate) use walls::{WallDrive, WallGrid, WallTouch, WallTracks, each_touch, touching_disc};
 
 use crate::domain::Domain;
 use std::sync::Arc;

@@ -14,12 +14,13 @@ use super::{
 };
 use crate::io::checkpoint::CheckpointColumn;
 use crate::method::pairwise::{
-    Crossings, Elapsed, NameableDiscs, Phase, PrescribedMotion, SteppingDiscs, Timings, WallTouch, unwrapped,
-    wrapped,
+    Crossings, Elapsed, NameableDiscs, Phase, PlaneWalls, PrescribedMotion, SteppingDiscs, Timings,
+    WallTouch, unwrapped, wrapped,
 };
 use crate::method::{PerParticle, PhysicsFailure, SteeringError};
 use crate::particles::{Particle, Particles};
 use crate::scene::WallMotion;
+use std::sync::Arc;
 use stripmine_kernels::backend;
 use stripmine_kernels::integrator::NOT_FINITE;
 use stripmine_kernels::integrator::gear::STATE;

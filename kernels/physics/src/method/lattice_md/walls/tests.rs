@@ -228,9 +228,15 @@ fn lid_rests_where_springs_balance_its_force() {
         (0..20_000).for_each(|_| grains.step().unwrap());
         let values = grains.own_values();
         let [force, height, speed] = [values[3], values[6], values[8]];
-        assert!((height - (1.0 - 12.0 / 2e4)).abs() < 1e-9 && speed.abs() < 1e-9, "{engine}: {height} {speed}");
+        assert!(
+            (height - (1.0 - 12.0 / 2e4)).abs() < 1e-9 && speed.abs() < 1e-9,
+            "{engine}: {height} {speed}"
+        );
         // Lid, left, right, bottom.
-        assert!((force - 6.0).abs() < 1e-6 && (values[9 + 10 + 3] + 6.0).abs() < 1e-6, "{engine}: {values:?}");
+        assert!(
+            (force - 6.0).abs() < 1e-6 && (values[9 + 10 + 3] + 6.0).abs() < 1e-6,
+            "{engine}: {values:?}"
+        );
     }
 }
 
@@ -250,8 +256,14 @@ fn disc_and_lid_collide_elastically() {
 #[test]
 fn lid_exchanges_energy_with_grains() {
     let lid = "[[walls]]\nfrom = [0.0, 9.0]\nto = [14.0, 9.0]\nmass = 40.0\nforce = [0.0, -30.0]\n";
-    let text = MANY.replace("sides = [14.0, 17.0]", "sides = [14.0, 12.0]").split("[[walls]]").next().unwrap().to_owned();
-    let text = text.replace("count = 90", "count = 60").replace("gravity = [0.0, -2.0]", "gravity = [0.0, 0.0]");
+    let text = MANY
+        .replace("sides = [14.0, 17.0]", "sides = [14.0, 12.0]")
+        .split("[[walls]]")
+        .next()
+        .unwrap()
+        .to_owned();
+    let text =
+        text.replace("count = 90", "count = 60").replace("gravity = [0.0, -2.0]", "gravity = [0.0, 0.0]");
     let balance = |dt: &str, engine: &str| {
         let dt_key = format!("integrator.dt={dt}");
         let mut grains = started(&format!("{text}{lid}"), &[&dt_key, &format!("machine.engine={engine}")]);
@@ -272,7 +284,8 @@ fn lid_exchanges_energy_with_grains() {
 /// Two joined walls part by g = ½: a disc rests on their ends, at the height √(R'² − g²/4) with R' = R − ξ and 2 k ξ cos α = m g.
 #[test]
 fn walls_that_part_have_corners() {
-    let walls = "\n[[walls]]\nfrom = [0.0, 4.0]\nto = [5.0, 4.0]\n[[walls]]\nfrom = [5.0, 4.0]\nto = [10.0, 4.0]\n";
+    let walls =
+        "\n[[walls]]\nfrom = [0.0, 4.0]\nto = [5.0, 4.0]\n[[walls]]\nfrom = [5.0, 4.0]\nto = [10.0, 4.0]\n";
     let at_height = |depth: f64| ((0.5 - depth) * (0.5 - depth) - 0.0625f64).sqrt();
     let mut depth = 0.0;
     (0..50).for_each(|_| depth = 6.0 * (0.5 - depth) / at_height(depth) / 4e4);

@@ -53,7 +53,8 @@ impl<P: Element> WallGrid<P> {
     fn place(&mut self) {
         self.elements.iter().for_each(|element| self.first[element.cell as usize] = 0);
         let surfaces = self.walls.surfaces_at(&self.motions);
-        let found = elements(&self.grid, &self.walls.pieces_at(&self.motions), self.walls.reach(), self.margin);
+        let found =
+            elements(&self.grid, &self.walls.pieces_at(&self.motions), self.walls.reach(), self.margin);
         self.elements = found
             .into_iter()
             .map(|found| {

@@ -6,8 +6,9 @@ mod motion;
 
 pub(crate) use contacts::{WallTouch, each_touch, touching_disc};
 pub(crate) use grid::WallGrid;
+pub use motion::PlaneMotion;
+pub(crate) use motion::WallDrive;
 pub(crate) use motion::WallTracks;
-pub use motion::{PlaneMotion, WallDrive};
 
 use super::PrescribedMotion;
 use crate::domain::Domain;

@@ -93,8 +93,16 @@ impl WallTrack {
 }
 
 /// Names of the numbers of a wall in checkpoints.
-const SAVED: [&str; 8] =
-    ["since", "from_x", "from_y", "velocity_x", "velocity_y", "driven", "driven_speed", "driven_acceleration"];
+const SAVED: [&str; 8] = [
+    "since",
+    "from_x",
+    "from_y",
+    "velocity_x",
+    "velocity_y",
+    "driven",
+    "driven_speed",
+    "driven_acceleration",
+];
 
 /// Motions of all plane walls along a run. Driven walls follow Newton's law by velocity Verlet.
 #[derive(Clone, Debug, Default, PartialEq)]
