@@ -79,6 +79,45 @@ fn floor_carries_the_weight() {
     assert!(grains.totals().wall_work == 0.0 && grains.totals().dissipated > 0.0);
 }
 
+/// Oblique collisions with a wall that rests, shears or oscillates agree with LAMMPS's `fix wall/gran hooke` in position, velocity and spin.
+#[test]
+fn wall_contacts_agree_with_lammps() {
+    let table = include_str!("../../../../../../tests/rivals/wall_contacts.csv").lines();
+    let (mut rows, mut turned) = (0, 0.0f64);
+    for row in table.filter(|line| !line.starts_with('#')).skip(1) {
+        let row: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let (wall, disc, after) = (&row[..3], &row[3..10], &row[10..]);
+        let (&[shear, amplitude, frequency], &[radius, mass, x, y, vx, vy, omega]) = (wall, disc) else { panic!() };
+        let moving = match (shear != 0.0, frequency != 0.0) {
+            (true, _) => format!("velocity = [{shear:?}, 0.0]\n"),
+            (_, true) => format!("amplitude = [0.0, {amplitude:?}]\nfrequency = {frequency:?}\n"),
+            _ => String::new(),
+        };
+        // The wall of LAMMPS is one length lower.
+        let text = format!(
+            "format = 2\nunits = \"reduced\"\n[method]\nkind = \"lattice-md\"\n[domain]\nsides = [16.0, 16.0]\nperiodic = [true, false]\n\
+             closed_sides = \"edge\"\n[particles]\ngenerate = \"list\"\nradius = {radius:?}\nmass = {mass:?}\npositions = [[{x:?}, {:?}]]\n\
+             velocities = [[{vx:?}, {vy:?}]]\nomegas = [{omega:?}]\n[law]\nkind = \"linear\"\nstiffness = 187.0\nnormal_damping = 0.7\n\
+             shear_damping = 20.0\nfriction = 0.3\ncohesionless = false\n[integrator]\nkind = \"velocity-verlet\"\ndt = 2.5e-4\n\
+             [run]\nsteps = 1\n[[walls]]\nfrom = [0.0, {:?}]\nto = [16.0, {:?}]\n{moving}",
+            y + 1.0,
+            1.0 + amplitude,
+            1.0 + amplitude
+        );
+        for engine in ["fast", "programs"] {
+            let mut grains = started(&text, &[&format!("machine.engine={engine}")]);
+            (0..10_000).for_each(|_| grains.step().unwrap());
+            let Particle { position, velocity, omega: spin, .. } = grains.particles().all()[0];
+            let found = [position[0], position[1] - 1.0, velocity[0], velocity[1], spin];
+            let off = found.iter().zip(after).map(|(ours, theirs)| (ours - theirs).abs()).fold(0.0, f64::max);
+            assert!(off < 2e-4, "{engine}: {found:?} {after:?}");
+            turned = turned.max((spin - omega).abs());
+        }
+        rows += 1;
+    }
+    assert!(rows == 15 && turned > 0.1, "{rows} {turned}");
+}
+
 /// Many discs between walls that lean, bend and move.
 const MANY: &str = "format = 2\nunits = \"reduced\"\n[method]\nkind = \"lattice-md\"\n[domain]\nsides = [14.0, 17.0]\n\
     periodic = [true, false]\ngravity = [0.0, -2.0]\n[particles]\ngenerate = \"random\"\ncount = 90\nradius = 0.5\n\
