@@ -277,12 +277,12 @@ fn step_is_compared_with_its_limit() {
         (
             "0.2",
             "dt is 1.8 times the limit 0.11107; inaccurate beyond, but most runs bear 2 times",
-            Some("warning: dt = 0.2 is 1.8 times the limit 0.11107"),
+            Some("dt = 0.2 is 1.8 times the limit 0.11107"),
         ),
         (
             "0.3",
             "dt is 2.7 times the limit 0.11107; inaccurate beyond",
-            Some("warning: dt = 0.3 is 2.7 times the limit 0.11107"),
+            Some("dt = 0.3 is 2.7 times the limit 0.11107"),
         ),
     ] {
         let dt = format!("integrator.dt={dt}");

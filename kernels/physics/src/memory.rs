@@ -7,7 +7,7 @@ use std::fs;
 use stripmine_kernels::isa::aligned_column::column_memory;
 
 /// Memory of the program itself: its code, threads and files (bytes).
-pub(crate) const PROGRAM: f64 = 17.0e6;
+pub(crate) const PROGRAM: f64 = 25.0e6;
 
 /// Memory that a run needs and memory that is available (bytes).
 #[derive(Clone, Debug, PartialEq, Serialize)]

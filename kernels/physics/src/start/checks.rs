@@ -148,7 +148,11 @@ pub(crate) fn overlaps(
 ) -> Vec<SceneError> {
     let (discs, mut deep) = (particles.all(), DeepOverlaps::default());
     visit_overlaps(domain, particles, limit, |first, second, penetration| {
-        deep.add((first, second, penetration));
+        // Wall discs may overlap each other: no force acts between them.
+        let is_wall = |number: usize| discs[number].kind == ParticleKind::Wall;
+        if !(is_wall(first) && is_wall(second)) {
+            deep.add((first, second, penetration));
+        }
         deep.count < COUNTED
     });
     let DeepOverlaps { worst, count } = deep;
