@@ -87,7 +87,9 @@ fn wall_contacts_agree_with_lammps() {
     for row in table.filter(|line| !line.starts_with('#')).skip(1) {
         let row: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
         let (wall, disc, after) = (&row[..3], &row[3..10], &row[10..]);
-        let (&[shear, amplitude, frequency], &[radius, mass, x, y, vx, vy, omega]) = (wall, disc) else { panic!() };
+        let (&[shear, amplitude, frequency], &[radius, mass, x, y, vx, vy, omega]) = (wall, disc) else {
+            panic!()
+        };
         let moving = match (shear != 0.0, frequency != 0.0) {
             (true, _) => format!("velocity = [{shear:?}, 0.0]\n"),
             (_, true) => format!("amplitude = [0.0, {amplitude:?}]\nfrequency = {frequency:?}\n"),

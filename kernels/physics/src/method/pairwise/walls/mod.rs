@@ -54,7 +54,7 @@ impl PlaneWalls {
         walls.joined(&WallTracks::new(&walls))
     }
 
-    /// The same walls, joined where ends coincide and keep their distance along these tracks.
+    /// Joins these walls where ends coincide and keep their distance along these tracks.
     pub(crate) fn joined(&self, tracks: &WallTracks) -> PlaneWalls {
         let segments: Vec<[[f64; 2]; 2]> = self.walls.iter().map(|wall| wall.ends).collect();
         let are_joined = |a: usize, b: usize| a == b || tracks.keep_distance(a, b);
