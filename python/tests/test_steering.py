@@ -209,6 +209,19 @@ class Command(unittest.TestCase):
         with self.assertRaisesRegex(stripmine.Error, "temporary folder\n  help: pass out="):
             scene.run().plot()
 
+    def test_starts_are_drawn_with_their_walls(self):
+        text = stripmine.scene("two-discs").toml()
+        walled = stripmine.scene(text + "[[walls]]\nfrom = [1.0, 1.0]\nto = [11.0, 2.0]\n")
+        paths = []
+        for name, scene in (("plain", stripmine.scene(text)), ("walled", walled)):
+            pictures = scene.plot(self.folder / name)
+            self.assertEqual(pictures, [self.folder / name / file for file in ("start.svg", "start.png")])
+            self.assertTrue(pictures[1].read_bytes().startswith(b"\x89PNG"))
+            paths.append(pictures[0].read_text().count("<path"))
+        self.assertEqual(paths[1], paths[0] + 1)
+        with self.assertRaisesRegex(stripmine.Error, "invalid value 'spede'"):
+            walled.plot(self.folder / "start", color="spede")
+
 
 if __name__ == "__main__":
     unittest.main()
