@@ -1,7 +1,7 @@
 //! Pictures of the particles of a run: its last state and, in a long box, the density along it over time.
 
 use super::colouring::{ColouringError, RunColouring};
-use super::segments::segments;
+use super::segments::{has_walls, segments};
 use super::window;
 use crate::cli::display::{UnitSystem, scene_of};
 use crate::report::figure::{ChartAxis, Drawing, DrawnShape, Figure, Guide, HeatMap, Picture, Tint};
@@ -157,7 +157,7 @@ fn state_figure(
     let axes = view.axes();
     let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
     let bounds = window::bounds(frame, scene, traces, axes);
-    let [[x, x_end], [y, y_end]] = window::visible_window(frame, traces, axes, bounds);
+    let [[x, x_end], [y, y_end]] = window::visible_window(frame, traces, (axes, has_walls(scene)), bounds);
     let (width, height) = (x_end - x, y_end - y);
     // A tall box is drawn lying, its upper end to the left.
     let lies = height > LONG * width;

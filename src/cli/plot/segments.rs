@@ -2,6 +2,11 @@
 
 use super::window;
 
+/// True if a scene has plane walls.
+pub(super) fn has_walls(scene: Option<&toml::Table>) -> bool {
+    scene.is_some_and(|scene| scene.contains_key("walls"))
+}
+
 /// Parts of the plane walls of a scene that are inside a window at a time, with their periodic images (length).
 pub(super) fn segments(scene: &toml::Table, time: f64, window: [[f64; 2]; 2]) -> Vec<[[f64; 2]; 2]> {
     let walls = scene.get("walls").and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
