@@ -1,4 +1,4 @@
-//! Plots of runs, without another program.
+//! Plots of runs and starts, without another program.
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -220,6 +220,67 @@ fn numbers(text: &str) -> Vec<f64> {
 
 fn between<'t>(text: &'t str, from: &str, to: &str) -> &'t str {
     text.split_once(from).unwrap_or_else(|| panic!("no {from}")).1.split_once(to).unwrap().0
+}
+
+/// The start of a scene is drawn with its sides, plane walls and discs at their places; options of runs are refused.
+#[test]
+fn starts_are_drawn_with_their_walls() {
+    let folder = tempfile::tempdir().unwrap();
+    let stripmine = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+        let output =
+            command.args(arguments).current_dir(folder.path()).stdin(Stdio::null()).output().unwrap();
+        let [said, failed] =
+            [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it).into_owned());
+        (output.status.code(), said, failed)
+    };
+    // A box of 12 × 8 with discs at (3, 4) and (6, 4.25).
+    let scene = stripmine(&["scene", "show", "two-discs"]).1;
+    let walls = "[[walls]]\nfrom = [1.0, 1.0]\nto = [11.0, 2.0]\nvelocity = [0.0, 0.5]\n";
+    fs::write(folder.path().join("boxed.toml"), scene + walls).unwrap();
+    let (code, said, failed) = stripmine(&["plot", "boxed.toml"]);
+    assert_eq!(code, Some(0), "{failed}");
+    assert_eq!(said, "start: boxed.plots/start.svg\nstart: boxed.plots/start.png\n");
+    let svg = fs::read_to_string(folder.path().join("boxed.plots/start.svg")).unwrap();
+    let paths = || svg.split(" d=\"").skip(1).map(|path| path.split('"').next().unwrap());
+    let lines: Vec<Vec<f64>> = paths()
+        .filter(|path| !path.contains('h') && path.matches('L').count() == 1)
+        .map(numbers)
+        .filter(|numbers| numbers.len() == 4)
+        .collect();
+    let [left, right, bottom, top, wall, ..] = &lines[..] else { panic!("{lines:?}") };
+    let [width, height] = [right[0] - left[0], top[1] - bottom[1]];
+    let place = |x: f64, y: f64| [left[0] + width * x / 12.0, bottom[1] + height * y / 8.0];
+    let ends = [place(1.0, 1.0), place(11.0, 2.0)].concat();
+    assert!(wall.iter().zip(&ends).all(|(found, end)| (found - end).abs() < 0.2), "{wall:?} {ends:?}");
+    // Dots are in tenths of a pixel.
+    let dots: Vec<Vec<f64>> = paths().filter(|path| path.contains("h1")).map(numbers).collect();
+    for centre in [place(3.0, 4.0), place(6.0, 4.25)] {
+        let is_there =
+            |dot: &Vec<f64>| dot.iter().zip(centre).all(|(found, at)| (found / 10.0 - at).abs() < 0.2);
+        assert!(dots.iter().any(is_there), "{centre:?} {dots:?}");
+    }
+
+    let (code, said, failed) = stripmine(&["plot", "plummer", "--set", "particles.count=50", "--json"]);
+    assert_eq!(code, Some(0), "{failed}");
+    let side: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(side["files"].as_array().unwrap().len(), 4, "from above and from the side: {said}");
+    assert!(folder.path().join("plummer.plots/start-side.png").is_file());
+    for (arguments, code, words) in [
+        (&["plot", "two-discs", "--film"][..], 2, "--film needs a run, and two-discs is a scene"),
+        (&["plot", "boxed.toml", "--columns", "kinetic"], 2, "--columns needs a run"),
+        (&["plot", "two-discs", "--set", "particles.radius=-1"], 3, "particles.radius"),
+        (&["plot", "plummer", "--color", "psi6"], 2, "no hexatic order"),
+        (&["run", "two-discs", "--set", "run.steps=20", "--quiet"], 0, ""),
+        (
+            &["plot", "two-discs", "--set", "particles.radius=0.4"],
+            2,
+            "--set needs a scene, and two-discs.run is a run",
+        ),
+    ] {
+        let (found, _, failed) = stripmine(arguments);
+        assert!(found == Some(code) && failed.contains(words), "{arguments:?}: {found:?} {failed}");
+    }
 }
 
 /// The ribbon of a mean is drawn at the mean and error bar of `summary.json` and begins at the end of the transient, which is shaded in the

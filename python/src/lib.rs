@@ -18,7 +18,6 @@ mod scene;
 mod scratch;
 mod simulation;
 mod steering;
-mod studies;
 mod table;
 mod tracing;
 

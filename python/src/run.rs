@@ -5,10 +5,9 @@ use crate::exceptions;
 use crate::frames::Frames;
 use crate::json;
 use crate::scratch::Scratch;
-use crate::studies::study;
 use crate::table::{Table, TableColumn};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyTuple;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
@@ -114,32 +113,6 @@ impl Run {
     /// Contents of `summary.json`.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         json::of_text(py, &self.text(py, SUMMARY)?)
-    }
-
-    /// Pictures of `stripmine plot`.
-    #[pyo3(
-        signature = (*given, **options),
-        text_signature = "($self, columns=None, *, color=None, out=None, overwrite=False, command=None)"
-    )]
-    fn plot<'py>(
-        slf: &Bound<'py, Self>,
-        given: &Bound<'py, PyTuple>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        study(slf, "plot", given, options)
-    }
-
-    /// Film of `stripmine plot --film`.
-    #[pyo3(
-        signature = (*given, **options),
-        text_signature = "($self, *, color=None, out=None, overwrite=False, command=None)"
-    )]
-    fn film<'py>(
-        slf: &Bound<'py, Self>,
-        given: &Bound<'py, PyTuple>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        study(slf, "film", given, options)
     }
 
     fn __repr__(&self) -> String {

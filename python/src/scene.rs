@@ -9,10 +9,8 @@ use crate::particles::Particles;
 use crate::run::Run;
 use crate::running::{begin_scratch, carry_out, existing};
 use crate::simulation::Simulation;
-use crate::studies::study;
 use crate::table::{Table, TableColumn};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -176,58 +174,6 @@ impl Scene {
         let checked = if resume { self.as_begun(py, &folder)? } else { self.checked.clone() };
         carry_out(py, &checked, &folder, existing)?.map_err(|error| exceptions::of(py, &error))?;
         Ok(Run::in_folder(folder))
-    }
-
-    /// Plan of `stripmine explain --json`.
-    #[pyo3(
-        signature = (*given, **options),
-        text_signature = "($self, of=None, error=None, *, time=None, limit=None, window=None, seconds=None, command=None)"
-    )]
-    fn explain<'py>(
-        slf: &Bound<'py, Self>,
-        given: &Bound<'py, PyTuple>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        study(slf, "explain", given, options)
-    }
-
-    /// Comparison of `stripmine compare --json`.
-    #[pyo3(
-        signature = (*given, **options),
-        text_signature = "($self, against, *, command=None)"
-    )]
-    fn compare<'py>(
-        slf: &Bound<'py, Self>,
-        given: &Bound<'py, PyTuple>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        study(slf, "compare", given, options)
-    }
-
-    /// Tables of `stripmine chart accuracy`, by name.
-    #[pyo3(
-        signature = (*given, **options),
-        text_signature = "($self, of=None, error=None, *, window=None, budget=60, out=None, command=None)"
-    )]
-    fn accuracy<'py>(
-        slf: &Bound<'py, Self>,
-        given: &Bound<'py, PyTuple>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        study(slf, "accuracy", given, options)
-    }
-
-    /// Table of `stripmine scan`.
-    #[pyo3(
-        signature = (*given, **options),
-        text_signature = "($self, over, seeds=1, until=None, *, out=None, resume=False, overwrite=False, command=None)"
-    )]
-    fn scan<'py>(
-        slf: &Bound<'py, Self>,
-        given: &Bound<'py, PyTuple>,
-        options: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        study(slf, "scan", given, options)
     }
 
     fn __repr__(&self) -> String {

@@ -267,8 +267,8 @@ impl Simulation {
 
 /// Job of a run that is advanced piece by piece.
 fn job<'j>(checked: &'j CheckedScene, program: &'j Origin) -> RunJob<'j> {
-    let CheckedScene { prepared, entry, .. } = checked;
-    RunJob { prepared: prepared.into(), quantities: entry.quantities, program, is_open_ended: true }
+    let quantities = checked.quantities();
+    RunJob { prepared: (&checked.prepared).into(), quantities, program, is_open_ended: true }
 }
 
 #[pymethods]

@@ -13,7 +13,7 @@ Quantities are in the units of the scene; dimensions such as "length" or "energy
 
 import os as _os
 
-from . import _pickling
+from . import _pickling, _studies
 from ._errors import BusyError, Error, Mistake, RunError, SceneError, SimulationError
 from ._stripmine import (
     Frame,
@@ -62,6 +62,7 @@ __all__ = [
 ]
 
 _pickling.register()
+_studies.register()
 
 # Threads do not survive a fork: a child of a process that has computed gets an error instead of waiting forever.
 if hasattr(_os, "register_at_fork"):

@@ -246,6 +246,20 @@ class Scene:
         command, as `explain` does.
         """
 
+    def plot(
+        self,
+        out: str | os.PathLike[str],
+        *,
+        color: str | None = None,
+        overwrite: bool = False,
+        command: str | os.PathLike[str] | None = None,
+    ) -> list[Path]:
+        """Draws the start, as `stripmine plot SCENE` does: particles, sides and plane walls. Returns the paths of the pictures (SVG and PNG).
+
+        `out` is the folder of the pictures; `color` what colours the particles, as in `Run.plot`. Bodies in space have two pictures. Needs the
+        command, as `explain` does.
+        """
+
     def accuracy(
         self,
         of: str | None = None,

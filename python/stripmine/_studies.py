@@ -7,6 +7,7 @@ import signal
 import subprocess
 import tempfile
 import warnings
+from contextlib import contextmanager
 from pathlib import Path
 
 from . import _stripmine
@@ -20,69 +21,114 @@ _ACCURACY = "accuracy"
 _TABLES = Path("host", _ACCURACY)
 
 
-def explain(scene, of=None, error=None, *, time=None, limit=None, window=None, seconds=None, command=None):
-    """The plan that the command prints."""
-    options = {"of": of, "error": error, "time": time, "limit": limit, "seconds": seconds}
+class OfScene:
+    """Methods of `Scene`."""
+
+    def explain(self, of=None, error=None, *, time=None, limit=None, window=None, seconds=None, command=None):
+        """Plan of `stripmine explain --json`."""
+        options = {"of": of, "error": error, "time": time, "limit": limit, "seconds": seconds, "window": _pair(window)}
+        with _scene_file(self) as (folder, _):
+            return printed_data(["explain", _SCENE, *_arguments(options)], folder, command)
+
+    def compare(self, against, *, command=None):
+        """Comparison of `stripmine compare --json`."""
+        options = {"against": [f"{key}={_value(value)}" for key, value in against.items()]}
+        with _scene_file(self) as (folder, _):
+            return printed_data(["compare", _SCENE, *_arguments(options)], folder, command)
+
+    def accuracy(self, of=None, error=None, *, window=None, budget=60, out=None, command=None):
+        """Tables of `stripmine chart accuracy`, by name."""
+        with _scene_file(self, out) as (folder, out):
+            options = {"of": of, "error": error, "budget": budget, "out": out, "window": _pair(window)}
+            rows = printed_data(["chart", _ACCURACY, _SCENE, *_arguments(options)], folder, command)
+            described = json.loads((out / _TABLES / "datapackage.json").read_text(encoding="utf-8"))
+        fields = {resource["path"]: resource["schema"]["fields"] for resource in described["resources"]}
+        return {name: _table(fields[f"{name}.csv"], rows[name]) for name in rows}
+
+    def scan(self, over, seeds=1, until=None, *, out=None, resume=False, overwrite=False, command=None):
+        """Table of `stripmine scan`."""
+        with _scene_file(self, out) as (folder, out):
+            options = {"seeds": seeds if seeds > 1 else None, "until": until, "out": out}
+            options |= {"over": [f"{key}={_listed(key, values)}" for key, values in over.items()], "resume": resume, "overwrite": overwrite}
+            scanned = printed_data(["scan", _SCENE, *_arguments(options)], folder, command, is_partial=True)
+        points = scanned["points"]
+        columns = [(it["key"], it["unit"], [point["values"][at] for point in points]) for at, it in enumerate(scanned["keys"])]
+        columns = [(name, unit, _type(values), values) for name, unit, values in columns]
+        for name, unit, values in _means(points):
+            columns.append((name, unit, "numbers", values))
+        reasons = [(point["failure"] or {}).get("message", "") for point in points]
+        columns += [("runs", "", "counts", [len(point["folders"]) for point in points]), ("failure", "", "words", reasons)]
+        return _stripmine._table(columns)
+
+    def plot(self, out, *, color=None, overwrite=False, command=None):
+        """Pictures of the start by `stripmine plot`."""
+        with _scene_file(self, out) as (folder, out):
+            return _drawn(_SCENE, {"color": color, "out": out, "overwrite": overwrite}, folder, command)
+
+
+class OfRun:
+    """Methods of `Run`."""
+
+    def plot(self, columns=None, *, color=None, out=None, overwrite=False, command=None):
+        """Pictures of `stripmine plot`."""
+        columns = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
+        options = {"columns": columns, "color": color, "out": _beside(self, out), "overwrite": overwrite}
+        return _drawn(self.folder, options, self.folder, command)
+
+    def film(self, *, color=None, out=None, overwrite=False, command=None):
+        """Film of `stripmine plot --film`."""
+        options = {"color": color, "out": _beside(self, out), "film": True, "overwrite": overwrite}
+        return _drawn(self.folder, options, self.folder, command)[-1]
+
+
+def register():
+    """Gives the classes of the physics their methods."""
+    for kind, methods in ((_stripmine.Scene, OfScene), (_stripmine.Run, OfRun)):
+        for name, method in vars(methods).items():
+            if not name.startswith("_"):
+                setattr(kind, name, method)
+
+
+@contextmanager
+def _scene_file(scene, out=None):
+    """A temporary folder with the file of a scene, and the path of the folder for results: `out`, or one in it."""
     with tempfile.TemporaryDirectory(prefix="stripmine-") as folder:
-        return _printed(scene, ["explain"], options, window, Path(folder), command)
+        folder = Path(folder)
+        (folder / _SCENE).write_text(scene.toml(), encoding="utf-8")
+        yield folder, folder / "out" if out is None else Path(out).absolute()
 
 
-def accuracy(scene, of=None, error=None, *, window=None, budget=60, out=None, command=None):
-    """The tables that the command writes, by name."""
-    with tempfile.TemporaryDirectory(prefix="stripmine-") as folder:
-        out = Path(folder, _ACCURACY) if out is None else Path(out).absolute()
-        options = {"of": of, "error": error, "budget": budget, "out": out}
-        rows = _printed(scene, ["chart", _ACCURACY], options, window, Path(folder), command)
-        described = json.loads((out / _TABLES / "datapackage.json").read_text(encoding="utf-8"))
-    fields = {resource["path"]: resource["schema"]["fields"] for resource in described["resources"]}
-    return {name: _table(fields[f"{name}.csv"], rows[name]) for name in rows}
-
-
-def scan(scene, over, seeds=1, until=None, *, out=None, resume=False, overwrite=False, command=None):
-    """The means over some keys that the command finds, as one table."""
-    with tempfile.TemporaryDirectory(prefix="stripmine-") as folder:
-        out = Path(folder, "scan") if out is None else Path(out).absolute()
-        options = {"seeds": seeds if seeds > 1 else None, "until": until, "out": out}
-        flags = [f"--{name}" for name, given in {"resume": resume, "overwrite": overwrite}.items() if given]
-        axes = [f"--over={key}={_listed(key, values)}" for key, values in over.items()]
-        scanned = _printed(scene, ["scan"], options, None, Path(folder), command, [*axes, *flags], is_partial=True)
-    points = scanned["points"]
-    columns = [(it["key"], it["unit"], [point["values"][at] for point in points]) for at, it in enumerate(scanned["keys"])]
-    columns = [(name, unit, _type(values), values) for name, unit, values in columns]
-    for name, unit, values in _means(points):
-        columns.append((name, unit, "numbers", values))
-    reasons = [(point["failure"] or {}).get("message", "") for point in points]
-    columns += [("runs", "", "counts", [len(point["folders"]) for point in points]), ("failure", "", "words", reasons)]
-    return _stripmine._table(columns)
-
-
-def compare(scene, against, *, command=None):
-    """The comparison that the command prints."""
-    overrides = [f"--against={key}={_value(value)}" for key, value in against.items()]
-    with tempfile.TemporaryDirectory(prefix="stripmine-") as folder:
-        return _printed(scene, ["compare"], {}, None, Path(folder), command, overrides)
-
-
-def plot(run, columns=None, *, color=None, out=None, overwrite=False, command=None):
-    """Paths of the pictures that the command draws."""
-    columns = None if columns is None else ",".join([columns] if isinstance(columns, str) else columns)
-    return _drawn(run, {"columns": columns, "color": color}, [], out, overwrite, command)
-
-
-def film(run, *, color=None, out=None, overwrite=False, command=None):
-    """Path of the film that the command makes."""
-    return _drawn(run, {"color": color}, ["--film"], out, overwrite, command)[-1]
-
-
-def _drawn(run, options, flags, out, overwrite, command):
-    """Paths of the files that `plot` writes for a run, by default to a folder beside that of the run."""
-    folder = Path(run.folder)
-    if out is None and run._is_temporary:
+def _beside(run, out):
+    """Path of the folder for the pictures of a run, by default beside that of the run."""
+    if out is not None:
+        return Path(out).absolute()
+    if run._is_temporary:
         raise Error("the run is in a temporary folder\n  help: pass out=, a folder for the pictures", "usage")
-    out = folder.with_name(f"{folder.stem}.plots") if out is None else Path(out).absolute()
-    options = [f"--{name}={value}" for name, value in {**options, "out": out}.items() if value is not None]
-    flags = [*flags, "--overwrite"] if overwrite else flags
-    return [Path(file) for file in printed_data(["plot", str(folder), *options, *flags], folder, command)["files"]]
+    folder = Path(run.folder)
+    return folder.with_name(f"{folder.stem}.plots")
+
+
+def _drawn(what, options, folder, command):
+    """Paths of the files that `plot` writes."""
+    return [Path(file) for file in printed_data(["plot", str(what), *_arguments(options)], folder, command)["files"]]
+
+
+def _arguments(options):
+    """Options as the command takes them: none for None and False, a flag for True, one for each item of a list, a pair as two words."""
+    for name, value in options.items():
+        match value:
+            case None | False:
+                pass
+            case True:
+                yield f"--{name}"
+            case tuple():
+                yield from (f"--{name}", *map(str, value))
+            case _:
+                yield from (f"--{name}={each}" for each in (value if isinstance(value, list) else [value]))
+
+
+def _pair(window):
+    return None if window is None else tuple(window)
 
 
 def _value(value):
@@ -122,15 +168,6 @@ def _type(values):
     if any(isinstance(value, str) for value in values):
         return "words"
     return "counts" if values and all(isinstance(value, int) for value in values) else "numbers"
-
-
-def _printed(scene, verb, options, window, folder, command, more=(), is_partial=False):
-    """The JSON that a verb of the command prints for a scene. The command runs in an existing folder with the scene file."""
-    options = [f"--{name}={value}" for name, value in options.items() if value is not None]
-    if window is not None:
-        options += ["--window", *map(str, window)]
-    (folder / _SCENE).write_text(scene.toml(), encoding="utf-8")
-    return printed_data([*verb, _SCENE, *options, *more], folder, command, is_partial)
 
 
 def printed_data(arguments, folder, command, is_partial=False):

@@ -18,6 +18,7 @@ fi
 PATH=$(dirname "$python"):$PATH "$python" -m pip install --quiet --disable-pip-version-check --no-build-isolation "$here"
 # The tests are copied, since beside the sources the source folder would be imported instead of the installed package.
 cp -r "$here/tests" "$here/notebooks" "$scratch"
+cp -r "$here/../tests/io/start_files" "$scratch/tests"
 cd "$scratch"
 "$python" -m unittest discover -t . -s tests
 if "$python" -c 'import nbclient, ipykernel, matplotlib' 2>/dev/null; then

@@ -92,22 +92,25 @@ class Recording(unittest.TestCase):
         return {name: (self.folder / folder / name).read_bytes() for name in ("thermo.csv", "trajectory.xyz", "changes.csv")}
 
     def test_recorded_simulations_have_the_files_of_runs(self):
-        scene = stripmine.scene("two-discs", SHORT)
-        scene.run(self.folder / "run")
-        simulation = scene.start(self.folder / "pieces")
-        for steps in (70, 130, 200):
-            simulation.advance(steps=steps)
-        run = simulation.finish()
-        self.assertEqual(run.summary()["steps"], 400)
-        for name in ("thermo.csv", "trajectory.xyz", "scene.toml"):
-            self.assertEqual((self.folder / "run" / name).read_bytes(), (self.folder / "pieces" / name).read_bytes(), name)
-        with self.assertRaisesRegex(stripmine.Error, "the run is finished\n  help: continue it"):
-            simulation.advance(steps=1)
-        # It goes on beyond the end of the scene.
-        simulation = scene.start(self.folder / "pieces", resume=True)
-        self.assertEqual((simulation.step, simulation.folder), (400, self.folder / "pieces"))
-        simulation.advance(steps=100)
-        self.assertEqual(simulation.finish().thermo()["step"][-1], 500)
+        # Walls add columns to the rows.
+        for preset, overrides in (("two-discs", {}), ("hopper", {"particles.count": 20})):
+            with self.subTest(preset):
+                scene, out = stripmine.scene(preset, {**overrides, **SHORT}), self.folder / preset
+                scene.run(out / "run")
+                simulation = scene.start(out / "pieces")
+                for steps in (70, 130, 200):
+                    simulation.advance(steps=steps)
+                run = simulation.finish()
+                self.assertEqual(run.summary()["steps"], 400)
+                for name in ("thermo.csv", "trajectory.xyz", "scene.toml"):
+                    self.assertEqual((out / "run" / name).read_bytes(), (out / "pieces" / name).read_bytes(), name)
+                with self.assertRaisesRegex(stripmine.Error, "the run is finished\n  help: continue it"):
+                    simulation.advance(steps=1)
+                # It goes on beyond the end of the scene.
+                simulation = scene.start(out / "pieces", resume=True)
+                self.assertEqual((simulation.step, simulation.folder), (400, out / "pieces"))
+                simulation.advance(steps=100)
+                self.assertEqual(simulation.finish().thermo()["step"][-1], 500)
 
     def test_resumed_changes_have_the_same_bits(self):
         scene = stripmine.scene("two-discs", SHORT)
@@ -208,6 +211,19 @@ class Command(unittest.TestCase):
             run.plot("kinetik")
         with self.assertRaisesRegex(stripmine.Error, "temporary folder\n  help: pass out="):
             scene.run().plot()
+
+    def test_starts_are_drawn_with_their_walls(self):
+        text = stripmine.scene("two-discs").toml() + "[[walls]]\nfrom = [1.0, 1.0]\nto = [11.0, 2.0]\n"
+        other = "[[walls]]\nfrom = [1.0, 7.0]\nto = [11.0, 6.0]\n"
+        paths = []
+        for name, walled in (("one", stripmine.scene(text)), ("two", stripmine.scene(text + other))):
+            pictures = walled.plot(self.folder / name)
+            self.assertEqual(pictures, [self.folder / name / file for file in ("start.svg", "start.png")])
+            self.assertTrue(pictures[1].read_bytes().startswith(b"\x89PNG"))
+            paths.append(pictures[0].read_text().count("<path"))
+        self.assertEqual(paths[1], paths[0] + 1)
+        with self.assertRaisesRegex(stripmine.Error, "invalid value 'spede'"):
+            walled.plot(self.folder / "start", color="spede")
 
 
 if __name__ == "__main__":

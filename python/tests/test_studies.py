@@ -1,6 +1,5 @@
 """Plans and the accuracy of means, found by the command."""
 
-import inspect
 import os
 import signal
 import stat
@@ -14,7 +13,6 @@ from unittest import mock
 import numpy as np
 
 import stripmine
-from stripmine import _studies
 
 from . import scenes
 
@@ -105,14 +103,10 @@ class Commands(InFolder):
         program(self.folder, "").write_bytes(b"\x7fELF")
         self.refused("cannot be run", command=self.folder / "command")
 
-    def test_signatures_match_the_studies(self):
-        ways = [(stripmine.Scene, name) for name in ("explain", "accuracy", "scan", "compare")]
-        for kind, name in [*ways, (stripmine.Run, "plot"), (stripmine.Run, "film")]:
-            ours = list(inspect.signature(getattr(_studies, name)).parameters.values())[1:]
-            shown = list(inspect.signature(getattr(kind, name)).parameters.values())[1:]
-            self.assertEqual(ours, shown)
-        with self.assertRaisesRegex(TypeError, "budgte"):
-            self.scene.accuracy(budgte=3)
+    def test_unknown_options_raise_type_errors(self):
+        for study in (self.scene.explain, self.scene.accuracy, self.scene.compare, self.scene.scan, self.scene.plot):
+            with self.assertRaisesRegex(TypeError, "budgte"):
+                study({}, budgte=3)
 
 
 @COMMAND

@@ -73,6 +73,7 @@ const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
                 "stripmine plot melting.run --film --color psi6",
                 "also writes the film alone, coloured by order",
             ),
+            ("stripmine plot hopper", "draws the start of a scene, with its walls"),
         ],
     ),
     (

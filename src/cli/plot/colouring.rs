@@ -163,7 +163,7 @@ impl Colouring {
     }
 }
 
-/// Colouring of the particles of one run.
+/// Colouring of the particles of one run or scene.
 pub(super) struct RunColouring {
     colouring: &'static Colouring,
     /// True if `--color` was given.
@@ -173,14 +173,18 @@ pub(super) struct RunColouring {
 }
 
 impl RunColouring {
-    /// Colouring named by a word, or the default.
-    pub(super) fn new(word: Option<&str>, run: &Path, methods: Methods) -> RunColouring {
-        let colouring = COLOURINGS.iter().find(|it| Some(it.word) == word).unwrap_or(&COLOURINGS[0]);
-        let forces = || {
+    /// Colouring named by a word, or the default, with the pair forces of a run's scene.
+    pub(super) fn of_run(word: Option<&str>, run: &Path, methods: Methods) -> RunColouring {
+        RunColouring::new(word, || {
             let scene = run.join("scene.toml");
             let (prepared, _) = load(&scene.to_string_lossy(), &[], methods).ok()?;
             prepared.model.pair_forces()
-        };
+        })
+    }
+
+    /// Colouring named by a word, or the default. `forces` gives the pair forces of the scene; it is called if the colouring needs them.
+    pub(super) fn new(word: Option<&str>, forces: impl FnOnce() -> Option<PairForces>) -> RunColouring {
+        let colouring = COLOURINGS.iter().find(|it| Some(it.word) == word).unwrap_or(&COLOURINGS[0]);
         let forces = if colouring.takes_forces { forces() } else { None };
         RunColouring { colouring, is_chosen: word.is_some(), forces }
     }

@@ -182,7 +182,8 @@ impl FilmFrames {
         let some = (self.kept.len() * cast.particles.len()).div_ceil(LOOKED_AT).max(1);
         let places: Vec<[f64; 3]> = grains().step_by(some).map(|seen| seen.position).collect();
         let bounds = window::bounds(last, scene, &places, AXES);
-        let [[left, right], [low, high]] = window::visible_window(last, &places, AXES, bounds);
+        let [[left, right], [low, high]] =
+            window::visible_window(last, &places, (AXES, !walls.is_empty()), bounds);
         let shades = colours.ends(grains().map(|seen| seen.value).collect())?;
         let is_seen = |[x, y, _]: [f64; 3], radius: f64| {
             x > left - radius && x < right + radius && y > low - radius && y < high + radius

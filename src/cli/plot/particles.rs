@@ -72,20 +72,41 @@ pub(super) fn pictures(run: &Path, colours: &RunColouring) -> Result<Vec<Figure>
     let scene = scene_of(run);
     let every = (tracks.len() * last.particles.len()).div_ceil(TRACES).max(1);
     let traces = tracks.into_iter().step_by(every).flatten().collect::<Vec<_>>();
-    let has_depth = last.particles.all().iter().any(|particle| particle.position[2] != 0.0);
+    let name = short_name(run);
+    let walls = WallSegments::of_run(run, scene.as_ref());
+    let mut figures =
+        state_figures(("last-state", &name), &last, (scene.as_ref(), &walls), &traces, colours)?;
+    figures.extend(density_figure(&name, &last, scene.as_ref(), &slices));
+    Ok(figures)
+}
+
+/// Name of a run or scene in a title.
+pub(super) fn short_name(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().chars().take(NAMED).collect()
+}
+
+/// Pictures of the particles of a frame, of bodies in space from two sides; `picture` is the name of their files, `name` that in titles.
+///
+/// # Errors
+/// If the particles cannot be coloured this way.
+pub(super) fn state_figures(
+    (picture, name): (&str, &str),
+    frame: &ParticleFrame,
+    backdrop: (Option<&toml::Table>, &WallSegments),
+    traces: &[[f64; 3]],
+    colours: &RunColouring,
+) -> Result<Vec<Figure>, ColouringError> {
+    let has_depth = frame.particles.all().iter().any(|particle| particle.position[2] != 0.0);
     let views: &[ViewDirection] =
         if has_depth { &[ViewDirection::AlongZ, ViewDirection::AlongY] } else { &[ViewDirection::Plane] };
-    let values = colours.values(&last)?;
+    let values = colours.values(frame)?;
     let ends = colours.ends(values.clone())?;
-    let tells_apart = !colours.is_chosen && !traces.is_empty() && last.particles.len() <= TOLD_APART;
-    let (quantity, label) = (colours.quantity(), colours.label(scene.as_ref()));
+    let tells_apart = !colours.is_chosen && !traces.is_empty() && frame.particles.len() <= TOLD_APART;
+    let (quantity, label) = (colours.quantity(), colours.label(backdrop.0));
     let shades = Shades { values, ends, quantity, label, tells_apart };
-    let stem = run.file_stem().unwrap_or_default().to_string_lossy();
-    let name: String = stem.chars().take(NAMED).collect();
-    let walls = WallSegments::of_run(run, scene.as_ref());
-    let backdrop = (scene.as_ref(), &walls);
-    let states = views.iter().map(|&view| state_figure(&name, &last, backdrop, &traces, &shades, view));
-    Ok(states.chain(density_figure(&name, &last, scene.as_ref(), &slices)).collect())
+    let of_view =
+        |&view: &ViewDirection| state_figure((picture, name), frame, backdrop, traces, &shades, view);
+    Ok(views.iter().map(of_view).collect())
 }
 
 /// Shades of the particles.
@@ -126,7 +147,7 @@ fn gravity(scene: &toml::Table) -> Option<[f64; 2]> {
 
 /// Picture of the particles of a frame.
 fn state_figure(
-    name: &str,
+    (picture, name): (&str, &str),
     frame: &ParticleFrame,
     (scene, walls): (Option<&toml::Table>, &WallSegments),
     traces: &[[f64; 3]],
@@ -139,7 +160,7 @@ fn state_figure(
     let axes = view.axes();
     let flat = |position: [f64; 3]| axes.map(|axis| position[axis]);
     let bounds = window::bounds(frame, scene, traces, axes);
-    let [[x, x_end], [y, y_end]] = window::visible_window(frame, traces, axes, bounds);
+    let [[x, x_end], [y, y_end]] = window::visible_window(frame, traces, (axes, !walls.is_empty()), bounds);
     let (width, height) = (x_end - x, y_end - y);
     // A tall box is drawn lying, its upper end to the left.
     let lies = height > LONG * width;
@@ -225,7 +246,7 @@ fn state_figure(
                 .map(|[a, b]| if lies { [-b, a] } else { [a, b] }),
         }),
     })
-    .figure(if view == ViewDirection::AlongY { "last-state-side" } else { "last-state" }, title)
+    .figure(if view == ViewDirection::AlongY { format!("{picture}-side") } else { picture.to_owned() }, title)
     .caption(if *tells_apart { traced.trim().to_owned() } else { format!("Shade: {label}.{traced}") })
 }
 

@@ -89,7 +89,13 @@ impl WallSegments {
         segments
     }
 
-    fn of(scene: &toml::Table) -> WallSegments {
+    /// True without walls.
+    pub(super) fn is_empty(&self) -> bool {
+        self.walls.is_empty()
+    }
+
+    /// Walls of a scene that follow its prescribed motions.
+    pub(super) fn of(scene: &toml::Table) -> WallSegments {
         let walls = walls(scene).iter().filter_map(|wall| WallPath::of(scene, wall)).collect();
         WallSegments { walls, images: images(scene) }
     }

@@ -66,11 +66,11 @@ pub(super) fn bounds(
     axes.map(|axis| known(axis).unwrap_or(endless))
 }
 
-/// Window along two axes (length): the whole box, or the part of it, or of space, with almost all particles.
+/// Window along two axes (length): the whole box if it has plane walls or is full, or the part of it, or of space, with almost all particles.
 pub(super) fn visible_window(
     frame: &ParticleFrame,
     traces: &[[f64; 3]],
-    axes: [usize; 2],
+    (axes, has_walls): ([usize; 2], bool),
     bounds: [[f64; 2]; 2],
 ) -> [[f64; 2]; 2] {
     let all = frame.particles.all();
@@ -93,7 +93,8 @@ pub(super) fn visible_window(
         // The floor is always shown.
         let from = if low.is_finite() && !is_boxed { low } else { (from - around).max(low) };
         let to = (to + around).min(high);
-        if is_boxed && to - from > FULL * (high - low) { [low, high] } else { [from, to] }
+        let is_whole = is_boxed && (has_walls || to - from > FULL * (high - low));
+        if is_whole { [low, high] } else { [from, to] }
     });
     let length = |[from, to]: [f64; 2]| to - from;
     let longest = length(occupied[0]).max(length(occupied[1]));
@@ -145,7 +146,7 @@ mod tests {
 
     fn seen(places: &[[f64; 3]], cell: [f64; 2], axes: [usize; 2]) -> [[f64; 2]; 2] {
         let frame = frame(places, cell);
-        visible_window(&frame, &[], axes, bounds(&frame, None, &[], axes))
+        visible_window(&frame, &[], (axes, false), bounds(&frame, None, &[], axes))
     }
 
     /// Square of n × n positions with side 10 and its corner at the origin.
@@ -162,6 +163,10 @@ mod tests {
         let [x, y] = seen(&square(20), [10.0, 500.0], [0, 1]);
         assert_eq!((x, y[0]), ([0.0, 10.0], 0.0));
         assert!((10.0..13.0).contains(&y[1]), "{y:?}");
+        // Not if plane walls stand in the empty part.
+        let frame = frame(&square(20), [10.0, 500.0]);
+        let whole = bounds(&frame, None, &[], [0, 1]);
+        assert_eq!(visible_window(&frame, &[], ([0, 1], true), whole), [[0.0, 10.0], [0.0, 500.0]]);
     }
 
     #[test]
@@ -217,7 +222,7 @@ mod tests {
         let scene: toml::Table = "[domain]\nsides = [10.0, 40.0]".parse().unwrap();
         let bounds = bounds(&frame, Some(&scene), &[], [0, 1]);
         assert_eq!(bounds, [[0.0, 10.0], [0.0, f64::INFINITY]]);
-        let [x, y] = visible_window(&frame, &[], [0, 1], bounds);
+        let [x, y] = visible_window(&frame, &[], ([0, 1], false), bounds);
         assert_eq!((x, y[0]), ([0.0, 10.0], 0.0));
         assert!((10.0..13.0).contains(&y[1]), "{y:?}");
     }
