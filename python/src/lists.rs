@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use serde_json::{Value, json};
 use stripmine_physics::method::observed::UnknownName;
 use stripmine_physics::method::{METHODS, MethodEntry, ObservedQuantity, method};
-use stripmine_physics::scene::{Fallback, Key, KeyValueKind};
+use stripmine_physics::scene::{Fallback, Key};
 
 /// Preset scenes of the package: name and title.
 #[pyfunction]
@@ -47,13 +47,7 @@ pub(crate) fn keys<'py>(py: Python<'py>, method: Option<&str>) -> PyResult<Bound
         let error = UnknownName::new("method", method.unwrap_or_default(), names);
         return Err(PyValueError::new_err(error.to_string()));
     };
-    let keys = || entry.vocabulary.keys.keys();
-    // Keys of the tables of a list come after all others.
-    let fields = keys().flat_map(|key| match key.kind {
-        KeyValueKind::Tables(fields) => fields.iter().copied(),
-        _ => [].iter().copied(),
-    });
-    json::to_python(py, &keys().chain(fields).map(line).collect::<Value>())
+    json::to_python(py, &entry.vocabulary.keys.keys_and_fields().map(line).collect::<Value>())
 }
 
 fn line(key: &Key) -> Value {

@@ -52,6 +52,17 @@ class Steering(unittest.TestCase):
         np.testing.assert_allclose(simulation.particles().angular_velocity, [2.0, -1.0], rtol=1e-12)
         np.testing.assert_allclose(simulation.particles().angle, [0.5, -0.25], rtol=1e-12)
 
+    def test_walls_move_on_with_another_velocity(self):
+        simulation = stripmine.scene("shear-cell", {"integrator.dt": 2.0**-10}).start()
+        simulation.advance(time=0.5)
+        simulation.set(wall_velocities=[[0.25, 0.0], [0.5, 0.0]])
+        simulation.advance(time=1.0)
+        seen = simulation.observe()
+        # Middles of walls 20 long that moved by -0.5 and 0.5 before.
+        self.assertAlmostEqual(seen["wall_1_x"], 10.0 - 0.5 + 0.25, places=12)
+        self.assertAlmostEqual(seen["wall_2_x"], 10.0 + 0.5 + 0.5, places=12)
+        self.assertEqual((seen["wall_1_velocity_x"], seen["wall_2_velocity_x"]), (0.25, 0.5))
+
     def test_temperature_relaxes_to_the_bath(self):
         scene = stripmine.scene("langevin-free", {"particles.count": 20000, "domain.sides": [500.0, 500.0], "integrator.dt": 0.05})
         simulation = scene.start()
@@ -63,6 +74,7 @@ class Steering(unittest.TestCase):
 
     def test_refusals_name_the_quantity(self):
         discs, hard = stripmine.scene("two-discs").start(), stripmine.scene("hard-disks", {"particles.count": 56}).start()
+        shear, lid = stripmine.scene("shear-cell").start(), stripmine.scene("piston").start()
         for simulation, quantities, words in (
             (discs, {"velocities": np.zeros((3, 2))}, r"velocities has the shape \(3, 2\)\n  help: give an array of the shape \(2, 2\)"),
             (discs, {"velocities": np.zeros(4)}, r"velocities has the shape \(4,\)"),
@@ -72,6 +84,9 @@ class Steering(unittest.TestCase):
             (discs, {"bath_temperature": 1.0}, "no bath_temperature to change: its discs are in no bath\n  help: change velocities"),
             (hard, {"bath_temperature": 1.0}, "no bath_temperature to change"),
             (hard, {"gravity": (0.0, -1.0)}, "nothing stops the fall across a periodic side"),
+            (shear, {"wall_velocities": [[1.0, 0.0]]}, r"wall_velocities has the shape \(1, 2\)\n  help: give an array of the shape \(2, 2\)"),
+            (shear, {"wall_velocities": [[1.0, 0.0], [500.0, 0.0]]}, r"wall_velocities\[1\] moves wall 2, at up to 500"),
+            (lid, {"wall_velocities": [[1.0, 0.0]]}, r"wall_velocities\[0\] moves wall 1, which a force drives"),
         ):
             before = state(simulation)
             with self.subTest(quantities=quantities), self.assertRaisesRegex(stripmine.Error, words):

@@ -62,12 +62,7 @@ impl KeyLine {
 
 /// Keys of a method, those of the tables of a list after all others.
 fn key_lines(entry: &MethodEntry) -> Vec<KeyLine> {
-    let keys = || entry.vocabulary.keys.keys();
-    let fields = keys().flat_map(|key| match key.kind {
-        KeyValueKind::Tables(fields) => fields.iter().copied(),
-        _ => [].iter().copied(),
-    });
-    keys().chain(fields).map(KeyLine::of).collect()
+    entry.vocabulary.keys.keys_and_fields().map(KeyLine::of).collect()
 }
 
 /// A key of some methods.

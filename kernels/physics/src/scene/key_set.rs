@@ -1,6 +1,6 @@
 //! Keys of a method's scenes.
 
-use super::keys::{Key, Use};
+use super::keys::{Key, KeyValueKind, Use};
 
 /// Sections in the order in which they are written, with their contents.
 pub const SECTIONS: [(&str, &str); 9] = [
@@ -45,6 +45,15 @@ impl KeySet {
     /// All keys.
     pub fn keys(&self) -> impl Iterator<Item = &'static Key> + use<> {
         self.groups.iter().flat_map(|group| group.iter().copied())
+    }
+
+    /// All keys, those of the tables of a list after all others.
+    pub fn keys_and_fields(&self) -> impl Iterator<Item = &'static Key> + use<> {
+        let fields = self.keys().flat_map(|key| match key.kind {
+            KeyValueKind::Tables(fields) => fields.iter().copied(),
+            _ => [].iter().copied(),
+        });
+        self.keys().chain(fields)
     }
 
     /// Keys of a section; the section without a name is the head of the file.
