@@ -17,11 +17,14 @@ use crate::method::compress;
 use crate::method::entry::left_out;
 use crate::method::lattice_md::wall_checks;
 use crate::method::pairwise::PlaneWalls;
+use crate::method::pairwise::search::OnConflict;
 use crate::particles::{Particle, ParticleKind, Particles};
 use crate::scene::{MistakeKind, RADIUS, SceneError, SceneErrors, SceneValues, Warning};
 use crate::start::{self, InitialState, StatedStart};
 use crate::words::Words;
+use std::collections::HashMap;
 use std::sync::Arc;
+use stripmine_kernels::sweep::lattice::LatticeFrame;
 
 /// Checked scene: its discs, its lattice, and reported properties.
 #[derive(Clone, Debug, PartialEq)]
@@ -201,13 +204,23 @@ fn fitted(
     particles: &Particles,
     choices: &mut Vec<String>,
 ) -> Result<Geometry, Vec<SceneError>> {
+    let fit = |document: &GranularDocument| {
+        let geometry = geometry::fit(document, domain, radii, particles.len())?;
+        let search = &document.scene.search;
+        let is_exclusive = search.by == SearchKind::Lattice && search.on_conflict == OnConflict::Stop;
+        let shared = is_exclusive.then(|| shared_cell(document, &geometry, particles));
+        match shared.flatten() {
+            Some(error) => Err(vec![error]),
+            None => Ok(geometry),
+        }
+    };
     if document.scene.search.by != SearchKind::Auto {
-        return geometry::fit(document, domain, radii, particles.len());
+        return fit(document);
     }
     let mut first: Option<Vec<SceneError>> = None;
     for SearchChoice { by, reason } in choice::searches(&document.scene, domain, particles) {
         document.scene.search.by = by;
-        match geometry::fit(document, domain, radii, particles.len()) {
+        match fit(document) {
             Ok(geometry) => {
                 choices.push(format!("search.by = \"{}\": {reason}", by.word()));
                 return Ok(geometry);
@@ -216,6 +229,33 @@ fn fitted(
         }
     }
     Err(first.unwrap_or_default())
+}
+
+/// Error of two wall discs in one cell of the lattice: they may overlap each other, but not there.
+fn shared_cell(
+    document: &GranularDocument,
+    geometry: &Geometry,
+    particles: &Particles,
+) -> Option<SceneError> {
+    let LatticeFrame { origin, edge } = geometry.frame;
+    let walls = &particles.all()[particles.grain_count()..];
+    let mut taken = HashMap::with_capacity(walls.len());
+    for disc in walls {
+        let place = disc.planar_position();
+        let cell = [0, 1].map(|axis| ((place[axis] - origin[axis]) / edge[axis]).floor() as i64);
+        if let Some(other) = taken.insert(cell, disc.id) {
+            let [x, y] = place.map(start::rounded_to_nine_digits);
+            let message = format!(
+                "wall disc {other} and wall disc {} at ({x}, {y}) are in one cell of the lattice, which holds one disc",
+                disc.id
+            );
+            let error = document.values.spot(&SEARCH).error(MistakeKind::Placement, message);
+            return Some(
+                error.advising("set search.by = \"sectors\" or \"neighbor-list\", or use [[walls]]"),
+            );
+        }
+    }
+    None
 }
 
 fn all_alike(particles: &Particles) -> bool {

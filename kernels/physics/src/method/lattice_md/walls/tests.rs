@@ -79,6 +79,32 @@ fn floor_carries_the_weight() {
     assert!(grains.totals().wall_work == 0.0 && grains.totals().dissipated > 0.0);
 }
 
+/// Wall discs may overlap each other: a grain on the middle one of three rests at 2R − m g/k above it.
+#[test]
+fn overlapping_wall_discs_carry_a_grain() {
+    let text = DISC
+        .replace("KEYS", "normal_damping = 100.0")
+        .replace("periodic = [false, false]", "periodic = [true, true]");
+    let text = [("GX", "0.0"), ("GY", "-3.0"), ("VX", "0.0"), ("VY", "0.0"), ("X", "5.0"), ("Y", "3.9997")]
+        .into_iter()
+        .fold(text, |text, (name, value)| text.replace(name, value));
+    let walls = "wall_radius = 0.5\nwall_positions = [[4.7, 3.0], [5.0, 3.0], [5.3, 3.0]]\n[law]";
+    let text = text.replace("[law]", walls);
+    for overrides in [
+        ["search.by=sectors", "machine.engine=fast"],
+        ["search.by=neighbor-list", "machine.engine=fast"],
+        ["search.by=neighbor-list", "machine.engine=programs"],
+    ] {
+        let mut grains = started(&text, &overrides);
+        (0..8_000).for_each(|_| grains.step().unwrap());
+        let [x, y, _] = disc(&grains).position;
+        assert!((x - 5.0).abs() < 1e-12 && (y - (4.0 - 6.0 / 2e4)).abs() < 1e-9, "{overrides:?}: {x} {y}");
+        assert!(grains.totals().dissipated.is_finite());
+    }
+    let scene = GranularScene::parse("walls", &text).unwrap().with_overrides(&["search.by=lattice"]).unwrap();
+    assert!(scene.check().unwrap_err().to_string().contains("are in one cell of the lattice"));
+}
+
 /// Oblique collisions with a wall that rests, shears or oscillates agree with LAMMPS's `fix wall/gran hooke` in position, velocity and spin.
 #[test]
 fn wall_contacts_agree_with_lammps() {
