@@ -82,7 +82,7 @@ struct ComparedRun {
 impl ComparedRun {
     fn start(prepared: &Prepared, entry: &MethodEntry) -> Result<ComparedRun, PhysicsFailure> {
         let (mut simulation, every) = (prepared.start(StartPurpose::Run)?, prepared.schedule.rows);
-        let mut rows = AveragedRows::new(entry.quantities);
+        let mut rows = AveragedRows::new(prepared.quantities(entry));
         rows.add(&simulation.row());
         let due = every.next(&simulation.clock());
         Ok(ComparedRun { simulation, until: prepared.schedule.until, rows, every, due })

@@ -152,7 +152,9 @@ impl KeyTable {
             let constant = |it: &TableQuantity| {
                 self.points.iter().all(|point| !matches!(point.outcome(it), Some(AverageOutcome::Mean(_))))
             };
-            known.sort_by_key(|it| (constant(it), rank(main, it)));
+            // A line of [[flux]] is there to be counted: its number comes first.
+            let is_count = |it: &TableQuantity| it.name.starts_with("flux_") && it.name.ends_with("_count");
+            known.sort_by_key(|it| (constant(it), !is_count(it), rank(main, it)));
             let mut width: usize = self.key_columns(units).iter().map(|cells| width_of(cells)).sum();
             let fits = |it: &TableQuantity| {
                 width += width_of(&self.cells(it, units));
