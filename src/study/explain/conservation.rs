@@ -29,8 +29,7 @@ pub(crate) fn conserved_quantity_plan(
     let of_own = findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
     let own = own_result(case, findings, time);
     let error = target.error.map(|width| in_unit(width, 1.0));
-    let wanted = wanted(target, findings.own_run.as_ref());
-    let reaches = own.as_ref().is_some_and(|own| own.error.most <= wanted);
+    let mut wanted = wanted(case, target, findings.own_run.as_ref());
     let costs = |configuration: &MeasuredConfiguration, step: f64| {
         Some(
             findings.start
@@ -38,30 +37,35 @@ pub(crate) fn conserved_quantity_plan(
                 + configuration.cost? * configuration.step? / step * time,
         )
     };
-    let mut weighed: Vec<PlanCandidate<'_>> = usable()
-        .filter_map(|configuration| {
+    let candidates = |wanted: f64| {
+        let reaching = own.as_ref().filter(|own| own.error.most <= wanted);
+        let of_trials = usable().filter_map(|configuration| {
             let found = configuration.drift.as_ref()?.step_for(wanted)?;
-            // A run of the scene as it stands is the candidate below.
             let is_own = configuration.label == case.own.label() && Some(found.step) == case.step();
-            if is_own && reaches {
-                return None;
-            }
             let optimum = Optimum {
                 part: found.step / configuration.step?,
                 bias: BiasEstimate::exactly(found.farthest()),
                 time,
                 seconds: costs(configuration, found.step)?,
             };
-            Some(PlanCandidate { configuration, optimum })
-        })
-        .collect();
-    // The scene as it stands is always a candidate.
-    weighed.extend(own.as_ref().filter(|_| reaches).and_then(|own| {
-        let configuration = of_own?;
-        let part = case.step()? / configuration.step?;
-        let bias = BiasEstimate::exactly(own.error.most);
-        Some(PlanCandidate { configuration, optimum: Optimum { part, bias, time, seconds: own.seconds } })
-    }));
+            // A run of the scene as it stands is the candidate below.
+            (!is_own || reaching.is_none()).then_some(PlanCandidate { configuration, optimum })
+        });
+        // The scene as it stands is always a candidate.
+        let as_it_stands = reaching.and_then(|own| {
+            let configuration = of_own?;
+            let part = case.step()? / configuration.step?;
+            let bias = BiasEstimate::exactly(own.error.most);
+            Some(PlanCandidate { configuration, optimum: Optimum { part, bias, time, seconds: own.seconds } })
+        });
+        of_trials.chain(as_it_stands).collect::<Vec<_>>()
+    };
+    let mut weighed = candidates(wanted);
+    // A scene that warns is kept only if nothing found is better.
+    if let (true, None, Some(own)) = (weighed.is_empty(), error, &own) {
+        wanted = if own.error.most.is_finite() { own.error.most } else { wanted };
+        weighed = candidates(wanted);
+    }
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
     let least = usable().filter_map(|configuration| Some(configuration.drift.as_ref()?.least()));

@@ -7,7 +7,7 @@ use super::recommended::LikelyRange;
 use super::{ExplainError, PlanTarget, is_of_few};
 use crate::results::run_in_parallel;
 use crate::study::trial::{MeanEstimate, SampleSpan};
-use crate::study::{first_line, rounded};
+use crate::study::{StudyCase, first_line, rounded};
 use stripmine_physics::averages::student;
 use stripmine_physics::method::{ChoiceEffect, Prepared};
 use stripmine_physics::scene::Overrides;
@@ -50,7 +50,7 @@ impl SceneTrials<'_> {
             Some(_) => 0.0,
         };
         let mut own_run = self.run_of_scene(&configurations, time, most);
-        let wanted = wanted(self.target, own_run.as_ref());
+        let wanted = wanted(self.case, self.target, own_run.as_ref());
         self.take_up_adaptive(&mut configurations, own_run.as_ref(), own);
         let reaching = own_run.as_ref().filter(|run| run.deviation.most <= wanted);
         let of_scene = reaching.and_then(|run| Some(run.costs.as_ref()?.unit * time));
@@ -293,9 +293,11 @@ impl SceneTrials<'_> {
     }
 }
 
-/// Returns the error that a plan has to reach: the requested one, or that of the scene as it stands, unless its run fails or warns.
-pub(super) fn wanted(target: &PlanTarget, own_run: Option<&DeviationRun>) -> f64 {
-    let of_scene = || own_run.filter(|run| run.faults.is_empty()).map(|run| run.deviation.most);
+/// Returns the error that a plan has to reach: the requested one, or that of the scene as it stands, unless its run fails, or warns of few bodies.
+pub(super) fn wanted(case: &StudyCase, target: &PlanTarget, own_run: Option<&DeviationRun>) -> f64 {
+    let is_example = |run: &&DeviationRun| run.faults.is_empty() || !is_of_few(case);
+    let of_scene =
+        || own_run.filter(is_example).map(|run| run.deviation.most).filter(|most| most.is_finite());
     target.error.map(|width| in_unit(width, 1.0)).or_else(of_scene).unwrap_or(WANTED)
 }
 

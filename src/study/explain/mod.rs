@@ -122,6 +122,11 @@ pub(crate) enum ExplainError {
         /// Requested error, and the errors found.
         unreached: Unreached,
     },
+    /// A share of a mean of 0 is no error.
+    #[error(
+        "the trials give a mean of 0 for {quantity}, and a percentage of 0 is no error\n  help: give the error as a number, such as --error 0.01; or, where the quantity changes later, choose --window"
+    )]
+    ShareOfZero { quantity: &'static str },
     /// No plan is fast enough.
     #[error(
         "{quantity} cannot be estimated within {} s: the shortest run takes about {} s\n  help: raise --time",
@@ -282,6 +287,10 @@ pub(crate) fn explain(
         return within_seconds(case, target, &findings, &origin, within);
     }
     let quantity = target.quantity.name;
+    let is_share = matches!(target.error, Some(Width::Percent(_))) && !target.is_kept();
+    if is_share && findings.mean.mean == 0.0 && findings.mean.bar == 0.0 {
+        return Err(ExplainError::ShareOfZero { quantity });
+    }
     plan_or_scene(case, target, &findings, &origin)
         .map_err(|it| ExplainError::OutOfReach { quantity, unreached: Unreached { trials: seconds, ..it } })
 }
