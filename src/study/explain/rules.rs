@@ -107,7 +107,7 @@ fn plan_is_never_worse_than_the_scene() {
 /// By hand: two bodies keep their energy to 10⁻⁴ as they stand, in 1 s a unit of time. Another integrator is the plan if its error is no larger and it
 /// takes less time; else the scene is kept. With a target of 10⁻⁵ the scene is no candidate; if it fails, or warns, the plan has to reach 10⁻³.
 #[test]
-fn conserved_quantity_is_no_worse_than_in_the_scene() {
+fn conserved_plans_are_no_worse_than_scenes() {
     let case = StudyCase::load("kepler", &[], METHODS).unwrap();
     let all = SettingChoice::all(case.entry.axes);
     let other = all.iter().find(|choice| choice.scheme().map(|it| it.name) == Some("yoshida-4")).unwrap();
