@@ -83,13 +83,7 @@ fn plans_match_their_runs_and_beat_the_scene() {
             most: 3e-11,
             asked: &[1e-6],
         },
-        BodyScene {
-            arguments: &["ellipse.toml"],
-            energy: -0.125,
-            nearest: 0.012,
-            most: 1.0,
-            asked: &[1e-8],
-        },
+        BodyScene { arguments: &["ellipse.toml"], energy: -0.125, nearest: 0.012, most: 1.0, asked: &[1e-8] },
         BodyScene {
             arguments: &[
                 "pythagorean",

@@ -98,8 +98,10 @@ impl TrialSample {
 
     /// Describes that the run ended before a time; none if it did not.
     pub(crate) fn early_end(&self, time: f64) -> Option<String> {
+        // A scene whose time is no multiple of its step ends up to half a step early.
+        let is_whole = self.reaches_scene_end && self.deviations().is_some();
         // The last stretch may end early by rounding.
-        (self.time < time * (1.0 - 1e-9)).then(|| {
+        (!is_whole && self.time < time * (1.0 - 1e-9)).then(|| {
             format!(
                 "stopped at a time of {} of {}, after {} s",
                 significant(self.time, 3),
