@@ -142,13 +142,14 @@ fn failing_scenes_get_a_plan() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let failing = ["kepler", "--set", "particles.eccentricity=0.99"];
-    let found = plan(&explain(folder, &[&failing[..], &["--json", "--write", "plan.toml"]].concat()));
+    let options = ["--seconds", "30", "--json", "--write", "plan.toml"];
+    let found = plan(&explain(folder, &[&failing[..], &options].concat()));
     assert!(found["own"]["faults"].as_str().unwrap().contains("unbound"), "{found:#}");
     let (summary, energies) = run(folder, &["plan.toml"]);
     let largest = number(&summary["largest_energy_error"]).abs();
     assert!(largest <= 1e-3 && number(&found["expected"]["most"]) <= 1e-3, "{largest:e}: {found:#}");
     assert!(energies.iter().all(|it| (it / -0.125 - 1.0).abs() <= 1e-3), "{energies:?}");
-    let page = explain(folder, &failing);
+    let page = explain(folder, &[&failing[..], &["--estimate"]].concat());
     let page = String::from_utf8_lossy(&page.stdout).into_owned();
     assert!(page.contains("scene as it stands: it fails: "), "{page}");
 }
