@@ -270,3 +270,16 @@ fn moved_run_resumes_with_its_table() {
     let text = fs::read_to_string(there.join("run/scene.toml")).unwrap();
     assert!(text.contains("file = \"../wca.csv\"\n# rows of this file: SHA-256 "), "{text}");
 }
+
+/// The scene of the benchmark has no table, and no option gives it one: the message names the option and what to do.
+#[test]
+fn benchmarks_refuse_a_law_without_its_table() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stripmine"));
+    let output = command.args(["bench", "langevin", "--law", "table", "--quiet"]).output().unwrap();
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    for words in ["--law table: `law.file` is missing", "no option for this key", "stripmine run SCENE"] {
+        assert!(said.contains(words), "{words} is not in: {said}");
+    }
+    assert!(!said.contains("langevin-report"), "{said}");
+}

@@ -315,6 +315,9 @@ fn phases_table(found: &Scaling) -> FormattedTable {
         .note("Best repeats. A serial part below 0 means more gain than threads, from caches.".to_owned())
 }
 
+/// Advice for a value that needs a key of the scene.
+const NO_KEY: &str = "a benchmark has a scene of its own, and no option for this key: set it in your scene, and `stripmine run SCENE` prints steps and wall time";
+
 /// Failure of a measurement; mistakes of the scene are reported as mistakes of the options.
 fn measurement_failure(error: MeasurementError, given: &[OptionOverride]) -> CommandFailure {
     match error {
@@ -325,12 +328,21 @@ fn measurement_failure(error: MeasurementError, given: &[OptionOverride]) -> Com
     }
 }
 
-/// Replaces the location of each mistake by the option that caused it.
+/// Replaces the location of each mistake by the option that caused it. A key that the scene of the benchmark lacks is missing because of an option of
+/// the same section, and no option can give it.
 fn mistakes_of_options(SceneErrors(mut mistakes): SceneErrors, given: &[OptionOverride]) -> SceneErrors {
     for mistake in &mut mistakes {
         let option = given.iter().find(|given| mistake.file == format!("--set {}", given.text));
         if let Some(given) = option {
             mistake.file.clone_from(&given.option);
+        }
+        let section = |text: &str| text.split_once('.').map(|(section, _)| section.to_owned());
+        let lacking = mistake.message.strip_prefix('`').filter(|_| mistake.reason == MistakeKind::Missing);
+        let option = lacking.and_then(|key| given.iter().find(|it| section(&it.text) == section(key)));
+        if let Some(given) = option {
+            mistake.file.clone_from(&given.option);
+            mistake.place = None;
+            mistake.suggestion = Some(NO_KEY.to_owned());
         }
     }
     SceneErrors(mistakes)

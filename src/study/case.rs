@@ -3,11 +3,13 @@
 use super::SettingChoice;
 use crate::results::JournalIdentity;
 use sha2::{Digest, Sha256};
-use stripmine_physics::method::{MethodEntry, Methods, Prepared, Until, prepare, vocabularies};
+use stripmine_physics::method::{
+    MethodEntry, Methods, ObservedQuantity, Prepared, Until, prepare, vocabularies,
+};
 use stripmine_physics::scene::{Overrides, SceneErrors, SceneValues};
 
 /// Format of finished runs in journals; raised whenever their contents change.
-const JOURNALED: &str = "11";
+const JOURNALED: &str = "12";
 
 /// A scene, its method, and its own configuration.
 pub(crate) struct StudyCase {
@@ -78,6 +80,11 @@ impl StudyCase {
     pub(crate) fn arguments(&self) -> String {
         let set = self.overrides.iter().map(|text| format!(" --set {text}"));
         std::iter::once(self.what.clone()).chain(set).collect()
+    }
+
+    /// Observed quantities: those of the method, and those of the scene's walls and lines.
+    pub(crate) fn quantities(&self) -> &'static [ObservedQuantity] {
+        self.prepared.quantities(self.entry)
     }
 
     /// Time step of the scene; none where the method has none (time).

@@ -114,7 +114,7 @@ fn least_errors(
     {
         let of = |it: &StepDeviation| {
             let seconds = findings.start + findings.row_seconds(time) + cost * step / it.step * time;
-            ErrorPoint { seconds, step: Some(it.step), error: it.farthest, most: it.farthest }
+            ErrorPoint { seconds, step: Some(it.step), error: it.farthest(), most: it.farthest() }
         };
         return drift.tried.iter().map(of).filter(|it| it.error.is_finite() && it.error > 0.0).collect();
     }

@@ -30,7 +30,7 @@ impl SceneTrials<'_> {
             .ok()?;
         let mut other = sample.known()?;
         if differ(&mean.known, &other) {
-            let observed = (self.case.entry.quantities, self.target.place);
+            let observed = (self.case.quantities(), self.target.place);
             let later = mean.known.transient.max(other.transient);
             // A run that ends before that gives no mean.
             other = mean_after(&sample.rows, observed, (&other, sample.pace()), later)?;

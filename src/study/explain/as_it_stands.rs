@@ -31,24 +31,28 @@ impl RunPlan {
         let phases = of_own.map_or(vec![], |configuration| {
             configuration.phases.iter().map(|(name, cost)| (name.clone(), cost * slower * time)).collect()
         });
+        let run = findings.own_run.as_ref();
         // A conserved quantity has no mean: it is judged over the whole run.
-        let judged = match self.mean {
-            Some(_) => String::new(),
-            None => format!("; judged over the whole run of {}", significant(time, 3)),
+        let why = match self.mean {
+            Some(_) => {
+                let takes = seconds(self.seconds.likely);
+                format!("no plan reaches an equally small error in less time; the best takes {takes}")
+            }
+            None => format!(
+                "no plan reaches an equally small error in less time, over the whole run of {} with its encounters",
+                significant(time, 3)
+            ),
         };
-        let why = format!(
-            "no plan reaches an equally small error in less time; the best takes {}{judged}",
-            seconds(self.seconds.likely)
-        );
         RunPlan {
             configuration: case.own.label(),
             decisions: vec![Decision {
                 what: AS_IT_STANDS.to_owned(),
-                chosen: "as it stands".to_owned(),
+                chosen: "keep it as it stands".to_owned(),
                 why,
                 beside: vec![],
             }],
             expected: own.error,
+            deviation: run.map(|run| run.deviation),
             seconds: LikelyRange::within(own.seconds, TIME_WITHIN),
             memory: case.prepared.memory.needed,
             phases,

@@ -3,8 +3,8 @@
 use super::PlanTarget;
 use super::bias::BiasEstimate;
 use super::decisions::decisions;
-use super::drift::{StepDeviation, StepDeviations};
-use super::drifts::WANTED;
+use super::drift::StepDeviations;
+use super::drifts::wanted;
 use super::findings::{Findings, MeasuredConfiguration};
 use super::lengths::{PlanCandidate, RunLength};
 use super::optimum::Optimum;
@@ -27,9 +27,9 @@ pub(crate) fn conserved_quantity_plan(
     let usable = || findings.configurations.iter().filter(|configuration| configuration.dropped.is_none());
     let time = case.duration().unwrap_or(0.0);
     let of_own = findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
-    let own_error = of_own.and_then(|configuration| configuration.drift.as_ref()?.at(case.step()?));
+    let own = own_result(case, findings, time);
     let error = target.error.map(|width| in_unit(width, 1.0));
-    let wanted = error.or(own_error).unwrap_or(WANTED);
+    let mut wanted = wanted(case, target, findings.own_run.as_ref());
     let costs = |configuration: &MeasuredConfiguration, step: f64| {
         Some(
             findings.start
@@ -37,29 +37,40 @@ pub(crate) fn conserved_quantity_plan(
                 + configuration.cost? * configuration.step? / step * time,
         )
     };
-    let mut weighed: Vec<PlanCandidate<'_>> = usable()
-        .filter_map(|configuration| {
-            let drift = configuration.drift.as_ref()?;
-            // The scene as it stands is a candidate even if a shorter step happens to be worse.
-            let as_it_stands = || {
-                let is_own = configuration.label == case.own.label();
-                let farthest = own_error.filter(|error| is_own && *error <= wanted)?;
-                Some(StepDeviation { step: case.step()?, farthest })
-            };
-            let found = drift.step_for(wanted).or_else(as_it_stands)?;
+    let candidates = |wanted: f64| {
+        let reaching = own.as_ref().filter(|own| own.error.most <= wanted);
+        let of_trials = usable().filter_map(|configuration| {
+            let found = configuration.drift.as_ref()?.step_for(wanted)?;
+            let is_own = configuration.label == case.own.label() && Some(found.step) == case.step();
             let optimum = Optimum {
                 part: found.step / configuration.step?,
-                bias: BiasEstimate::exactly(found.farthest),
+                bias: BiasEstimate::exactly(found.farthest()),
                 time,
                 seconds: costs(configuration, found.step)?,
             };
-            Some(PlanCandidate { configuration, optimum })
-        })
-        .collect();
+            // A run of the scene as it stands is the candidate below.
+            (!is_own || reaching.is_none()).then_some(PlanCandidate { configuration, optimum })
+        });
+        // The scene as it stands is always a candidate.
+        let as_it_stands = reaching.and_then(|own| {
+            let configuration = of_own?;
+            let part = case.step()? / configuration.step?;
+            let bias = BiasEstimate::exactly(own.error.most);
+            Some(PlanCandidate { configuration, optimum: Optimum { part, bias, time, seconds: own.seconds } })
+        });
+        of_trials.chain(as_it_stands).collect::<Vec<_>>()
+    };
+    let mut weighed = candidates(wanted);
+    // A scene that warns is kept only if nothing found is better.
+    if let (true, None, Some(own)) = (weighed.is_empty(), error, &own) {
+        wanted = if own.error.most.is_finite() { own.error.most } else { wanted };
+        weighed = candidates(wanted);
+    }
     weighed.sort_by(|a, b| a.optimum.seconds.total_cmp(&b.optimum.seconds));
     prefer(&mut weighed, case);
     let least = usable().filter_map(|configuration| Some(configuration.drift.as_ref()?.least()));
-    let least = least.fold(f64::INFINITY, f64::min);
+    let of_scene = findings.own_run.as_ref().map_or(f64::INFINITY, |run| run.deviation.most);
+    let least = least.fold(of_scene, f64::min);
     let Some(best) = weighed.first() else {
         let expected = usable().filter_map(|configuration| {
             costs(configuration, configuration.drift.as_ref()?.expected_step(wanted)?)
@@ -77,6 +88,8 @@ pub(crate) fn conserved_quantity_plan(
     decisions.truncate(case.entry.axes.len());
     let drift = best.configuration.drift.as_ref();
     decisions.extend(drift.zip(step).map(|(drift, step)| step_of(drift, step, time)));
+    let tried =
+        drift.and_then(|drift| drift.tried.iter().find(|it| it.farthest() == best.optimum.bias.below));
     Ok(RunPlan {
         scene: case.arguments(),
         method: case.entry.vocabulary.keys.method,
@@ -87,6 +100,7 @@ pub(crate) fn conserved_quantity_plan(
         error,
         decisions,
         expected: ExpectedError::of(best.optimum.bias, 0.0),
+        deviation: tried.map(|it| it.deviation),
         seconds: LikelyRange::within(likely, TIME_WITHIN),
         memory: case.prepared.memory.needed,
         phases: phases(best, time),
@@ -98,12 +112,29 @@ pub(crate) fn conserved_quantity_plan(
         seeds: 1,
         starts_differ: None,
         overrides: overrides(case, best.configuration, step, (None, 0.0)),
-        own: of_own.zip(case.step()).and_then(|(configuration, step)| {
-            let error = BiasEstimate::exactly(own_error.unwrap_or(f64::NAN));
-            Some(OwnResult { seconds: costs(configuration, step)?, error: ExpectedError::of(error, 0.0) })
-        }),
+        own,
         left_out: vec![],
         origin: origin.to_owned(),
+    })
+}
+
+/// Returns cost and error of the scene as it stands, over its whole run; the error is NaN where there was no time to run it.
+fn own_result(case: &StudyCase, findings: &Findings, time: f64) -> Option<OwnResult> {
+    let of_own = findings.configurations.iter().find(|configuration| configuration.label == case.own.label());
+    let run = findings.own_run.as_ref();
+    let (start, row, unit) = match run.and_then(|run| run.costs.as_ref()) {
+        Some(costs) => (costs.start, costs.row, costs.unit),
+        None => {
+            let configuration = of_own?;
+            let slower = configuration.step? / case.step()?;
+            (findings.start, findings.row, configuration.cost? * slower)
+        }
+    };
+    let error = run.map_or(f64::NAN, |run| run.deviation.most);
+    Some(OwnResult {
+        seconds: start + row * findings.mean.rows_in(time) + unit * time,
+        error: ExpectedError::of(BiasEstimate::exactly(error), 0.0),
+        faults: run.map_or(String::new(), |run| run.faults.clone()),
     })
 }
 
@@ -112,8 +143,11 @@ fn step_of(drift: &StepDeviations, step: f64, time: f64) -> Decision {
     let at = |step: f64| drift.at(step).map_or("unknown".to_owned(), |farthest| significant(farthest, 2));
     let longer = drift.tried.iter().rev().find(|it| it.step > step * (1.0 + 1e-9));
     let longer = longer.map_or(String::new(), |it| {
-        let farthest =
-            if it.farthest.is_finite() { significant(it.farthest, 2) } else { "the run fails".to_owned() };
+        let farthest = if it.farthest().is_finite() {
+            significant(it.farthest(), 2)
+        } else {
+            "the run fails".to_owned()
+        };
         format!("; at {}: {farthest}", significant(it.step, 4))
     });
     Decision {

@@ -224,7 +224,7 @@ impl SceneTrials<'_> {
             prepared.start(StartPurpose::Run).map_err(|failure| first_line(&failure.what_and_when()))
         };
         let compared = PairedConfigurations { steps, first, starts, begin: &begin };
-        let observed = (self.case.entry.quantities, self.target.place);
+        let observed = (self.case.quantities(), self.target.place);
         run_pairs(&self.trial, &compared, observed, seconds)
             .map_err(|broken| PairingFailure::Broken(broken.at, broken.why))
     }

@@ -1,7 +1,7 @@
 //! Deviation of conserved quantities over a whole run, at the steps tried.
 
+use super::recommended::LikelyRange;
 use crate::study::rounded;
-use crate::study::trial::any_number;
 use serde::{Deserialize, Serialize};
 
 /// Largest deviation of a quantity from its first value, at one step.
@@ -9,9 +9,35 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct StepDeviation {
     /// The step (time).
     pub step: f64,
-    /// Largest deviation (the quantity's unit); infinite where the run fails.
-    #[serde(with = "any_number")]
-    pub(crate) farthest: f64,
+    /// Largest deviation over the run (the quantity's unit); infinite where the run fails.
+    pub(crate) deviation: LikelyRange,
+}
+
+impl StepDeviation {
+    /// Upper bound of the deviation.
+    pub(crate) fn farthest(&self) -> f64 {
+        self.deviation.most
+    }
+}
+
+/// A run to the end of the scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct DeviationRun {
+    /// Largest deviation over the run (the quantity's unit); infinite where the run fails.
+    pub(super) deviation: LikelyRange,
+    /// Costs; none where the run fails.
+    pub(super) costs: Option<RunCosts>,
+    /// Reason why it is no example to follow: its failure, or its warnings; empty where there are none.
+    pub(super) faults: String,
+}
+
+/// Wall seconds until the first step, of a row, and of a unit of time, in total and in each phase.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct RunCosts {
+    pub(super) start: f64,
+    pub(super) row: f64,
+    pub(super) unit: f64,
+    pub(super) phases: Vec<(String, f64)>,
 }
 
 /// Runs of a configuration at several steps.
@@ -23,32 +49,32 @@ pub(crate) struct StepDeviations {
 
 impl StepDeviations {
     /// Adds a run.
-    pub(super) fn add(&mut self, step: f64, farthest: f64) {
-        self.tried.push(StepDeviation { step, farthest });
+    pub(super) fn add(&mut self, step: f64, deviation: LikelyRange) {
+        self.tried.push(StepDeviation { step, deviation });
         self.tried.sort_by(|a, b| b.step.total_cmp(&a.step));
     }
 
     /// Returns the longest step tried at which the deviation stays within an error at this step and at all shorter ones.
     pub(crate) fn step_for(&self, error: f64) -> Option<StepDeviation> {
-        self.tried.iter().rev().take_while(|it| it.farthest <= error).last().copied()
+        self.tried.iter().rev().take_while(|it| it.farthest() <= error).last().copied()
     }
 
     /// Deviation at a step that was tried.
     pub(crate) fn at(&self, step: f64) -> Option<f64> {
-        self.tried.iter().find(|it| rounded(it.step, 4) == rounded(step, 4)).map(|it| it.farthest)
+        self.tried.iter().find(|it| rounded(it.step, 4) == rounded(step, 4)).map(StepDeviation::farthest)
     }
 
     /// Smallest deviation found (the quantity's unit); infinite where no run finished.
     pub(crate) fn least(&self) -> f64 {
-        self.tried.iter().map(|it| it.farthest).fold(f64::INFINITY, f64::min)
+        self.tried.iter().map(|it| it.farthest()).fold(f64::INFINITY, f64::min)
     }
 
     /// Step at which the deviation is expected to reach an error, extrapolated from the two shortest steps; none where they show no trend.
     pub(super) fn expected_step(&self, error: f64) -> Option<f64> {
         let [.., long, short] = self.tried.as_slice() else { return None };
-        let power = libm::log(long.farthest / short.farthest) / libm::log(long.step / short.step);
+        let power = libm::log(long.farthest() / short.farthest()) / libm::log(long.step / short.step);
         let power = if power.is_finite() { power.clamp(POWERS[0], POWERS[1]) } else { return None };
-        Some(short.step * libm::pow(error / short.farthest, power.recip()))
+        Some(short.step * libm::pow(error / short.farthest(), power.recip()))
     }
 
     /// Next step to try for an error. Steps are halved until the error is reached, or quartered where half is not expected to be enough.
@@ -59,7 +85,7 @@ impl StepDeviations {
         let Some(found) = self.step_for(error) else {
             // Only rounding is left, or chaos: two halvings in a row gain nothing.
             let gains = |pair: &[StepDeviation]| {
-                pair[1].farthest < 0.5 * pair[0].farthest || pair[0].farthest.is_infinite()
+                pair[1].farthest() < 0.5 * pair[0].farthest() || pair[0].farthest().is_infinite()
             };
             let last = self.tried.windows(2).rev().take(2);
             let is_stuck = self.tried.len() > 4 && last.filter(|pair| !gains(pair)).count() == 2;
@@ -85,7 +111,7 @@ mod tests {
 
     fn tried(runs: &[[f64; 2]]) -> StepDeviations {
         let mut drift = StepDeviations::default();
-        runs.iter().for_each(|&[step, farthest]| drift.add(step, farthest));
+        runs.iter().for_each(|&[step, farthest]| drift.add(step, LikelyRange::exactly(farthest)));
         drift
     }
 
@@ -103,11 +129,11 @@ mod tests {
     fn steps_are_halved_and_then_bisected() {
         let mut drift = tried(&[[0.8, f64::INFINITY], [0.4, 1e-5]]);
         assert_eq!(drift.next_step(1e-6), Some(0.2));
-        drift.add(0.2, 1e-7);
+        drift.add(0.2, LikelyRange::exactly(1e-7));
         assert_eq!(drift.next_step(1e-6), Some(0.2828));
-        drift.add(0.2828, 2e-6);
+        drift.add(0.2828, LikelyRange::exactly(2e-6));
         assert_eq!(drift.next_step(1e-6), Some(0.2378));
-        drift.add(0.2378, 9e-7);
+        drift.add(0.2378, LikelyRange::exactly(9e-7));
         assert_eq!((drift.next_step(1e-6), drift.step_for(1e-6).map(|it| it.step)), (None, Some(0.2378)));
     }
 

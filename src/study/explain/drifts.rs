@@ -1,14 +1,16 @@
 //! Measures the deviation of conserved quantities over whole runs, step by step: long steps are cheap and come first.
 
-use super::ExplainError;
+use super::drift::{DeviationRun, RunCosts};
 use super::findings::{Findings, MeasuredConfiguration, MissingRun, NO_TIME, SceneTrials, sort_by_cost};
-use super::plan::in_unit;
+use super::plan::{in_unit, overrides};
+use super::recommended::LikelyRange;
+use super::{ExplainError, PlanTarget, is_of_few};
 use crate::results::run_in_parallel;
-use crate::study::rounded;
-use crate::study::trial::{MeanEstimate, SampleSpan, any_number};
-use serde::{Deserialize, Serialize};
-use stripmine_physics::averages::{AverageOutcome, student};
-use stripmine_physics::method::ChoiceEffect;
+use crate::study::trial::{MeanEstimate, SampleSpan};
+use crate::study::{StudyCase, first_line, rounded};
+use stripmine_physics::averages::student;
+use stripmine_physics::method::{ChoiceEffect, Prepared};
+use stripmine_physics::scene::Overrides;
 
 /// Longest step tried, in steps of the scene.
 const LONGEST: f64 = 64.0;
@@ -19,24 +21,10 @@ const MARGIN: f64 = 2.0;
 /// Two-sided confidence whose upper end is that of 95 % one-sided.
 const TWO_SIDED: f64 = 0.9;
 /// Target error where none is given and the scene's own is unknown.
-pub(super) const WANTED: f64 = 1e-3;
+const WANTED: f64 = 1e-3;
 
-/// A run to the end of the scene.
-#[derive(Serialize, Deserialize)]
-struct DeviationRun {
-    #[serde(with = "any_number")]
-    farthest: f64,
-    costs: Option<RunCosts>,
-}
-
-/// Wall seconds until the first step, of a row, and of a unit of time, in total and in each phase.
-#[derive(Serialize, Deserialize)]
-struct RunCosts {
-    start: f64,
-    row: f64,
-    unit: f64,
-    phases: Vec<(String, f64)>,
-}
+/// Share of the trial time up to which the scene as it stands is run first, even if a target error is given.
+const FIRST: f64 = 0.1;
 
 impl SceneTrials<'_> {
     /// Measures the deviation over whole runs, one after the other. The next run is of the configuration expected to reach the error most cheaply, as
@@ -56,28 +44,38 @@ impl SceneTrials<'_> {
         let (time, own) = self.case.duration().zip(self.case.step()).ok_or_else(unknown)?;
         let (mut start, mut row) = (0.0, 0.0);
         // Without a target error the plan has to match the scene as it stands, which is run first.
-        let wanted = match self.target.error {
-            Some(width) => in_unit(width, 1.0),
-            None => self.deviation_as_it_stands(&configurations, [time, own]).unwrap_or(WANTED),
+        let most = match self.target.error {
+            None => f64::INFINITY,
+            Some(_) if is_of_few(self.case) => FIRST * self.seconds,
+            Some(_) => 0.0,
         };
-        while let Some((at, step)) = self.next_run(&configurations, [time, own], wanted) {
+        let mut own_run = self.run_of_scene(&configurations, time, most);
+        let wanted = wanted(self.case, self.target, own_run.as_ref());
+        self.take_up_adaptive(&mut configurations, own_run.as_ref(), own);
+        let reaching = own_run.as_ref().filter(|run| run.deviation.most <= wanted);
+        let of_scene = reaching.and_then(|run| Some(run.costs.as_ref()?.unit * time));
+        let known = (wanted, of_scene.unwrap_or(f64::INFINITY));
+        while let Some((at, step)) = self.next_run(&configurations, [time, own], known) {
             let key = format!("whole run|{}|{step}", configurations[at].label);
             let Ok(run) = self.journal.recall(
                 &key,
                 |_| true,
-                || self.whole_run(&configurations[at], step, [time, wanted]),
+                || {
+                    let start = |number| self.planned_start(&configurations[at], step, number);
+                    self.whole_run(&start, time, wanted)
+                },
             ) else {
                 break;
             };
             let configuration = &mut configurations[at];
-            configuration.drift.get_or_insert_default().add(step, run.farthest);
+            configuration.drift.get_or_insert_default().add(step, run.deviation);
             if let Some(costs) = run.costs {
                 (start, row) = (costs.start, costs.row);
                 (configuration.step, configuration.cost, configuration.phases) =
                     (Some(step), Some(costs.unit), costs.phases);
             }
         }
-        self.own_run(&mut configurations, [time, own]);
+        own_run = own_run.or_else(|| self.run_of_scene(&configurations, time, f64::INFINITY));
         for configuration in configurations.iter_mut().filter(|configuration| configuration.dropped.is_none())
         {
             let why = match &configuration.drift {
@@ -89,14 +87,18 @@ impl SceneTrials<'_> {
             };
             configuration.dropped = Some(why.to_owned());
         }
-        if configurations.iter().all(|configuration| configuration.dropped.is_some()) {
+        let is_finished = own_run.as_ref().is_some_and(|run| run.deviation.most.is_finite());
+        if !is_finished && configurations.iter().all(|configuration| configuration.dropped.is_some()) {
+            let of_scene = own_run.filter(|run| !run.faults.is_empty());
+            let of_scene =
+                of_scene.map_or(String::new(), |run| format!("; as it stands it fails: {}", run.faults));
             let cheapest = configurations
                 .iter()
                 .filter_map(|configuration| Some(configuration.cost? * configuration.step?))
                 .fold(f64::INFINITY, f64::min);
             return Err(ExplainError::NoMean {
                 quantity: self.target.quantity.name,
-                why: "no run reached the end of the scene within the trial time".to_owned(),
+                why: format!("no run reached the end of the scene within the trial time{of_scene}"),
                 enough: Some(2.0 * cheapest / own * time).filter(|seconds| seconds.is_finite()),
                 run: self.run_as_it_stands(&configurations),
             });
@@ -104,6 +106,7 @@ impl SceneTrials<'_> {
         sort_by_cost(&mut configurations);
         self.unless_stopped(Findings {
             configurations,
+            own_run,
             mean: MeanEstimate::exactly(0.0),
             mean_configuration: String::new(),
             whole: None,
@@ -116,103 +119,116 @@ impl SceneTrials<'_> {
         })
     }
 
-    /// Adds the deviation of the scene as it stands to its own configuration: its user knows its values, and no plan may be worse.
-    fn own_run(&self, configurations: &mut [MeasuredConfiguration], of_scene: [f64; 2]) {
-        let label = self.case.own.label();
-        let farthest = self.deviation_as_it_stands(configurations, of_scene);
-        let configuration = configurations.iter_mut().find(|configuration| configuration.label == label);
-        if let (Some(configuration), Some(farthest)) = (configuration, farthest) {
-            let drift = configuration.drift.get_or_insert_default();
-            if drift.at(of_scene[1]).is_none() {
-                drift.add(of_scene[1], farthest);
-            }
-        }
-    }
-
-    /// Deviation in a run of the scene as it stands; none where no time is left for it.
-    fn deviation_as_it_stands(
+    /// Runs the scene as it stands: its user knows its values, and no plan may be worse. None where that takes longer than `most` (s) or the time left.
+    fn run_of_scene(
         &self,
         configurations: &[MeasuredConfiguration],
-        [time, own]: [f64; 2],
-    ) -> Option<f64> {
-        let label = self.case.own.label();
-        let configuration = configurations.iter().find(|configuration| configuration.label == label)?;
-        if let Some(known) = configuration.drift.as_ref().and_then(|drift| drift.at(own)) {
-            return Some(known);
-        }
-        if configuration.cost? * configuration.step? / own * time > self.left() {
+        time: f64,
+        most: f64,
+    ) -> Option<DeviationRun> {
+        // A scene that fails within the timing has no cost, and fails at once.
+        let takes = self.run_as_it_stands(configurations).unwrap_or(0.0);
+        if takes > self.left() || takes >= most {
             return None;
         }
-        let key = format!("as it stands|{label}|{own}");
-        let run = || self.whole_run(configuration, own, [time, f64::INFINITY]);
-        self.journal.recall(&key, |_| true, run).ok().map(|run| run.farthest)
+        let run = || {
+            self.whole_run(&|number| self.another_start(&Overrides::new(), None, number), time, f64::INFINITY)
+        };
+        self.journal.recall("as it stands", |_| true, run).ok()
     }
 
-    /// Runs the whole scene and returns the deviation. If that is within `wanted` and starts are random, more starts are run, and the bound for
-    /// another start with 95 % confidence is returned.
-    fn whole_run(
+    /// Gives the run of the scene as it stands to its own configuration, if its steps adapt: there is no other step to try.
+    fn take_up_adaptive(
+        &self,
+        configurations: &mut [MeasuredConfiguration],
+        own_run: Option<&DeviationRun>,
+        own: f64,
+    ) {
+        let of_own = configurations.iter_mut().find(|it| it.label == self.case.own.label());
+        let Some((configuration, run)) = of_own.zip(own_run) else { return };
+        let Some(costs) = run.costs.as_ref().filter(|_| self.is_adaptive(&self.case.own)) else { return };
+        configuration.drift.get_or_insert_default().add(own, run.deviation);
+        (configuration.step, configuration.cost, configuration.phases) =
+            (Some(own), Some(costs.unit), costs.phases.clone());
+    }
+
+    /// Prepares a numbered start of the run that a plan with this step prints: bodies are few enough to be judged at its own rows and at every step.
+    fn planned_start(
         &self,
         configuration: &MeasuredConfiguration,
         step: f64,
-        [time, wanted]: [f64; 2],
+        number: u64,
+    ) -> Result<Prepared, String> {
+        if is_of_few(self.case) {
+            let planned = overrides(self.case, configuration, Some(step), (None, 0.0));
+            return self.another_start(&planned, None, number);
+        }
+        self.another_start(&configuration.overrides, Some(step), number)
+    }
+
+    /// Runs the whole scene from `start`, by the number of the start, and returns the deviation. If that is within `wanted` and starts are random, more
+    /// starts are run, and the bound for another start with 95 % confidence is returned.
+    fn whole_run(
+        &self,
+        start: &(dyn Fn(u64) -> Result<Prepared, String> + Sync),
+        time: f64,
+        wanted: f64,
     ) -> Result<DeviationRun, MissingRun> {
-        let first = self.run_of_start(configuration, step, time, 0)?;
-        if self.case.prepared.seed.is_none() || first.farthest > wanted {
+        let first = self.run_of_start(start(0), time)?;
+        if self.case.prepared.seed.is_none() || first.deviation.most > wanted {
             return Ok(first);
         }
         let others: Vec<u64> = (1..STARTS).collect();
         let others: Result<Vec<DeviationRun>, MissingRun> =
-            run_in_parallel(&others, |&number| self.run_of_start(configuration, step, time, number));
+            run_in_parallel(&others, |&number| self.run_of_start(start(number), time));
         let Ok(others) = others else {
-            return Ok(DeviationRun { farthest: MARGIN * first.farthest, ..first });
+            let deviation = LikelyRange { most: MARGIN * first.deviation.most, ..first.deviation };
+            return Ok(DeviationRun { deviation, ..first });
         };
-        let all: Vec<f64> = others.iter().chain([&first]).map(|it| it.farthest).collect();
-        Ok(DeviationRun { farthest: deviation_bound(&all), ..first })
+        let all: Vec<LikelyRange> = others.iter().chain([&first]).map(|it| it.deviation).collect();
+        Ok(DeviationRun { deviation: deviation_of_starts(&all), ..first })
     }
 
-    /// Runs a numbered start; a run that fails has an infinite deviation.
-    fn run_of_start(
-        &self,
-        configuration: &MeasuredConfiguration,
-        step: f64,
-        time: f64,
-        number: u64,
-    ) -> Result<DeviationRun, MissingRun> {
+    /// Runs a start to its end; a run that fails has an infinite deviation.
+    fn run_of_start(&self, start: Result<Prepared, String>, time: f64) -> Result<DeviationRun, MissingRun> {
         let left = self.left();
         if left == 0.0 {
             return Err(MissingRun(NO_TIME.to_owned()));
         }
-        let observed = (self.case.entry.quantities, self.target.place);
-        let sample =
-            self.another_start(&configuration.overrides, Some(step), number).ok().and_then(|prepared| {
-                self.trial.sample(&prepared, observed, SampleSpan::Time(time, Some(left))).ok()
-            });
+        let observed = (self.case.quantities(), self.target.place);
+        let span = if is_of_few(self.case) { SampleSpan::Planned } else { SampleSpan::Time };
+        let sample = start.and_then(|prepared| {
+            let sample = self.trial.sample(&prepared, observed, span(time, Some(left)));
+            sample.map_err(|failure| first_line(&failure.what_and_when()))
+        });
+        let failed = |faults: String| DeviationRun {
+            deviation: LikelyRange::exactly(f64::INFINITY),
+            costs: None,
+            faults,
+        };
         let sample = match sample {
-            Some(sample) => sample,
-            None if self.left() == 0.0 => return Err(MissingRun(NO_TIME.to_owned())),
-            None => return Ok(DeviationRun { farthest: f64::INFINITY, costs: None }),
+            Ok(sample) => sample,
+            Err(_) if self.left() == 0.0 => return Err(MissingRun(NO_TIME.to_owned())),
+            Err(why) => return Ok(failed(why)),
         };
-        let farthest = match sample.outcome {
-            AverageOutcome::Kept { farthest, .. } => farthest,
-            _ => f64::INFINITY,
+        if let Some(why) = sample.early_end(time) {
+            return Err(MissingRun(why));
+        }
+        let Some([least, most]) = sample.deviations() else {
+            return Ok(failed(sample.missing_mean_reason()));
         };
-        let costs = RunCosts {
-            start: sample.start,
-            row: sample.row,
-            unit: sample.cost,
-            phases: sample.phases.clone(),
-        };
-        sample
-            .early_end(time)
-            .map_or(Ok(DeviationRun { farthest, costs: Some(costs) }), |why| Err(MissingRun(why)))
+        let (start, row, unit, faults) = (sample.start, sample.row, sample.cost, sample.warning_text());
+        let costs = RunCosts { start, row, unit, phases: sample.phases };
+        Ok(DeviationRun { deviation: LikelyRange { least, likely: most, most }, costs: Some(costs), faults })
     }
 
-    /// Returns index and step of the run that is expected to reach the error most cheaply; none where no time is left for it.
+    /// Returns index and step of the run that is expected to reach the error most cheaply; none where no time is left for it, or where the scene as it
+    /// stands, which takes `of_scene` (s), is cheaper.
     fn next_run(
         &self,
         configurations: &[MeasuredConfiguration],
         [time, own]: [f64; 2],
-        wanted: f64,
+        (wanted, of_scene): (f64, f64),
     ) -> Option<(usize, f64)> {
         let seconds = |configuration: &MeasuredConfiguration, step: f64| {
             Some(configuration.cost? * configuration.step? / step * time)
@@ -220,7 +236,7 @@ impl SceneTrials<'_> {
         let reached = |configuration: &MeasuredConfiguration| {
             seconds(configuration, configuration.drift.as_ref()?.step_for(wanted)?.step)
         };
-        let best = configurations.iter().filter_map(reached).fold(f64::INFINITY, f64::min);
+        let best = configurations.iter().filter_map(reached).fold(of_scene, f64::min);
         // Among configurations that differ in cost alone, only the cheapest is tried.
         let is_more_expensive = |configuration: &MeasuredConfiguration, other: &MeasuredConfiguration| {
             let [own, others] = [configuration, other].map(|it| self.choice(it));
@@ -274,6 +290,26 @@ impl SceneTrials<'_> {
         let fits = |run: &(usize, f64, f64, f64)| run.3 < best && run.2 < best && run.2 <= self.left();
         let next = runs.filter(fits).min_by(|a, b| a.3.total_cmp(&b.3))?;
         Some((next.0, next.1))
+    }
+}
+
+/// Returns the error that a plan has to reach: the requested one, or that of the scene as it stands, unless its run fails, or warns of few bodies.
+pub(super) fn wanted(case: &StudyCase, target: &PlanTarget, own_run: Option<&DeviationRun>) -> f64 {
+    let is_example = |run: &&DeviationRun| run.faults.is_empty() || !is_of_few(case);
+    let of_scene =
+        || own_run.filter(is_example).map(|run| run.deviation.most).filter(|most| most.is_finite());
+    target.error.map(|width| in_unit(width, 1.0)).or_else(of_scene).unwrap_or(WANTED)
+}
+
+/// Returns the deviation of another start from those of some starts: the smallest, the typical one, and the bound with 95 % confidence.
+fn deviation_of_starts(all: &[LikelyRange]) -> LikelyRange {
+    let largest: Vec<f64> = all.iter().map(|it| it.most).collect();
+    let typical =
+        largest.iter().map(|&it| libm::log(it.max(f64::MIN_POSITIVE))).sum::<f64>() / all.len() as f64;
+    LikelyRange {
+        least: all.iter().map(|it| it.least).fold(f64::INFINITY, f64::min),
+        likely: libm::exp(typical),
+        most: deviation_bound(&largest),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::ExplainError;
 use super::PlanTarget;
 use super::bias::Bias;
-use super::drift::StepDeviations;
+use super::drift::{DeviationRun, StepDeviations};
 use crate::results::{Journal, JournalError};
 use crate::study::trial::{MeanEstimate, SampleSpan, TrialControl, TrialSample, any_number};
 use crate::study::{SettingChoice, StudyCase, first_line};
@@ -51,6 +51,8 @@ pub(crate) struct Findings {
     /// Configurations by cost, dropped ones last.
     pub configurations: Vec<MeasuredConfiguration>,
     pub mean: MeanEstimate,
+    /// Run of the scene as it stands, where a conserved quantity is the target and there was time for it.
+    pub(crate) own_run: Option<DeviationRun>,
     /// Label of the configuration that measured the mean.
     pub(crate) mean_configuration: String,
     /// The scene's own run time, where the quantity never becomes stationary and its mean over the whole run is the target (time).
@@ -152,7 +154,7 @@ impl SceneTrials<'_> {
         }
         let prepared = self.prepared(&configuration.overrides, step)?;
         let span = span.within(self.left());
-        let observed = (self.case.entry.quantities, self.target.place);
+        let observed = (self.case.quantities(), self.target.place);
         self.trial.sample(&prepared, observed, span).map_err(|failure| first_line(&failure.what_and_when()))
     }
 

@@ -61,6 +61,15 @@ pub(crate) const SECONDS: [f64; 2] = [10.0, 60.0];
 /// Longest wall time of a plan by default (s).
 pub(crate) const LIMIT: f64 = 3600.0;
 
+/// Most bodies that are judged over every step of their whole run: it takes seconds, and the mean of a few orbits says little.
+const FEW: usize = 16;
+
+/// True if a scene has few bodies, whose close encounters decide its error.
+fn is_of_few(case: &StudyCase) -> bool {
+    let has_late_encounters = case.entry.trials.is_some_and(|trials| trials.has_late_encounters);
+    has_late_encounters && case.prepared.particles().len() <= FEW
+}
+
 /// Quantity and error that a plan is asked for.
 #[derive(Clone, Debug)]
 pub(crate) struct PlanTarget {
@@ -113,6 +122,11 @@ pub(crate) enum ExplainError {
         /// Requested error, and the errors found.
         unreached: Unreached,
     },
+    /// A share of a mean of 0 is no error.
+    #[error(
+        "the trials give a mean of 0 for {quantity}, and a percentage of 0 is no error\n  help: give the error as a number, such as --error 0.01; or, where the quantity changes later, choose --window"
+    )]
+    ShareOfZero { quantity: &'static str },
     /// No plan is fast enough.
     #[error(
         "{quantity} cannot be estimated within {} s: the shortest run takes about {} s\n  help: raise --time",
@@ -189,7 +203,7 @@ impl Reported for ExplainError {
 }
 
 impl PlanTarget {
-    /// Returns the target for a named quantity, or for the first one with a mean.
+    /// Returns the target for a named quantity. By default it is the first conserved one for few bodies, and else the first one with a mean.
     ///
     /// # Errors
     /// [`ExplainError::NoSuchQuantity`]
@@ -198,13 +212,14 @@ impl PlanTarget {
         name: Option<&str>,
         error: Option<Width>,
     ) -> Result<PlanTarget, ExplainError> {
-        let quantities = case.entry.quantities;
+        let quantities = case.quantities();
         let is_judged = |quantity: &&ObservedQuantity| quantity.kind != QuantityKind::Time;
         let known: Vec<&'static str> = quantities.iter().filter(is_judged).map(|it| it.name).collect();
         let first = || {
             let of_trials = case.entry.trials.and_then(|trials| trials.observables.first().copied());
-            let of_intervals = quantities.iter().find(|it| it.kind == QuantityKind::Interval);
-            of_trials.or(of_intervals.map(|it| it.name)).unwrap_or_default()
+            let of_kind = |kind| quantities.iter().find(|it| it.kind == kind).map(|it| it.name);
+            let of_few = of_kind(QuantityKind::Kept).filter(|_| is_of_few(case));
+            of_few.or(of_trials).or(of_kind(QuantityKind::Interval)).unwrap_or_default()
         };
         let name = name.unwrap_or_else(first);
         let place = quantities.iter().position(|it| it.name == name && is_judged(&it));
@@ -272,6 +287,10 @@ pub(crate) fn explain(
         return within_seconds(case, target, &findings, &origin, within);
     }
     let quantity = target.quantity.name;
+    let is_share = matches!(target.error, Some(Width::Percent(_))) && !target.is_kept();
+    if is_share && findings.mean.mean == 0.0 && findings.mean.bar == 0.0 {
+        return Err(ExplainError::ShareOfZero { quantity });
+    }
     plan_or_scene(case, target, &findings, &origin)
         .map_err(|it| ExplainError::OutOfReach { quantity, unreached: Unreached { trials: seconds, ..it } })
 }

@@ -84,6 +84,7 @@ pub(crate) fn plan(
         error,
         decisions: decisions(case, findings, &weighed, &length, (wanted, target.window)),
         expected,
+        deviation: None,
         seconds,
         memory: case.prepared.memory.needed * length.seeds.min(findings.threads as u64).max(1),
         phases: phases(best, per_run),
@@ -199,5 +200,5 @@ fn own(case: &StudyCase, configuration: &MeasuredConfiguration, findings: &Findi
     let chance =
         if left > 0.0 { StatisticalError::of(&known, findings.whole).over(left) } else { f64::INFINITY };
     let seconds = findings.start + findings.row * (time / every) + cost * time;
-    Some(OwnResult { seconds, error: ExpectedError::of(bias, chance) })
+    Some(OwnResult { seconds, error: ExpectedError::of(bias, chance), faults: String::new() })
 }

@@ -1,14 +1,18 @@
 //! Contents of a plan.
 
 use super::bias::BiasEstimate;
-use serde::Serialize;
+use crate::study::trial::any_number;
+use serde::{Deserialize, Serialize};
 use stripmine_physics::scene::Overrides;
 
 /// A number with its bounds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LikelyRange {
+    #[serde(with = "any_number")]
     pub least: f64,
+    #[serde(with = "any_number")]
     pub(crate) likely: f64,
+    #[serde(with = "any_number")]
     pub most: f64,
 }
 
@@ -16,6 +20,11 @@ impl LikelyRange {
     /// Interval within a factor of a likely value.
     pub(super) fn within(likely: f64, factor: f64) -> LikelyRange {
         LikelyRange { least: likely / factor, likely, most: likely * factor }
+    }
+
+    /// Interval of a single value.
+    pub(super) fn exactly(value: f64) -> LikelyRange {
+        LikelyRange { least: value, likely: value, most: value }
     }
 }
 
@@ -58,6 +67,9 @@ pub(crate) struct RunPlan {
     pub(crate) decisions: Vec<Decision>,
     /// Expected error, in the quantity's unit.
     pub expected: ExpectedError,
+    /// Largest deviation of a conserved quantity over a run (the quantity's unit): at its rows, at any step, and the bound for another start. None
+    /// for a mean.
+    pub deviation: Option<LikelyRange>,
     /// Wall seconds.
     pub seconds: LikelyRange,
     /// Memory of the runs (bytes).
@@ -95,6 +107,9 @@ pub(crate) struct OwnResult {
     pub seconds: f64,
     /// Expected error, in the quantity's unit.
     pub error: ExpectedError,
+    /// Reason why its run fails, or its warnings; empty where there are none or it was not run.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub(crate) faults: String,
 }
 
 /// Parts of an error.

@@ -2,8 +2,10 @@
 
 use super::as_it_stands::AS_IT_STANDS;
 use super::bias::{Bias, StepDifference};
+use super::drift::{DeviationRun, RunCosts};
 use super::findings::{Findings, MeasuredConfiguration};
 use super::plan::plan;
+use super::recommended::LikelyRange;
 use super::trial_runs::{measure_findings, plan_or_scene};
 use super::{ExplainError, PlanTarget, page};
 use crate::results::Journal;
@@ -43,6 +45,7 @@ fn findings(case: &StudyCase, configurations: &[ConfigurationCase<'_>], mean: Me
     Findings {
         configurations: configurations.iter().map(configuration).collect(),
         mean,
+        own_run: None,
         mean_configuration: String::new(),
         whole: None,
         starts_differ: None,
@@ -98,6 +101,60 @@ fn plan_is_never_worse_than_the_scene() {
         // Each phase has a time, in either plan.
         let [(phase, spent)] = plan.phases.as_slice() else { panic!("{page}") };
         assert!(phase == "forces" && (spent / (0.5 * seconds) - 1.0).abs() < 1e-6, "{spent}");
+    }
+}
+
+/// By hand: two bodies keep their energy to 10⁻⁴ as they stand, in 1 s a unit of time. Another integrator is the plan if its error is no larger and it
+/// takes less time; else the scene is kept. With a target of 10⁻⁵ the scene is no candidate; if it fails, or warns, the plan has to reach 10⁻³.
+#[test]
+fn conserved_plans_are_no_worse_than_scenes() {
+    let case = StudyCase::load("kepler", &[], METHODS).unwrap();
+    let all = SettingChoice::all(case.entry.axes);
+    let other = all.iter().find(|choice| choice.scheme().map(|it| it.name) == Some("yoshida-4")).unwrap();
+    let (time, step) = (case.duration().unwrap(), case.step().unwrap());
+    let none = MeanEstimate::exactly(0.0);
+    for (cost, error, fails, target, chosen) in [
+        (0.5, 1e-5, false, None, Some(other)),
+        (0.5, 2e-4, false, None, Some(&case.own)),
+        (1.5, 1e-9, false, None, Some(&case.own)),
+        (1.01, 1e-9, false, None, Some(&case.own)),
+        (1.5, 1e-9, false, Some(1e-5), Some(other)),
+        (1.5, 1e-9, false, Some(1e-3), Some(&case.own)),
+        (1.5, 1e-4, false, Some(1e-5), None),
+        (1.5, 1e-4, true, None, Some(other)),
+        (1.5, 1e-2, true, None, None),
+    ] {
+        let mut found = findings(&case, &[(&case.own, 1.0, None), (other, cost, None)], none);
+        found.configurations[1].drift.get_or_insert_default().add(step, LikelyRange::exactly(error));
+        let costs = RunCosts { start: 0.0, row: 0.0, unit: 1.0, phases: vec![] };
+        let deviation = LikelyRange { least: 1e-6, ..LikelyRange::exactly(1e-4) };
+        found.own_run = Some(match fails {
+            false => DeviationRun { deviation, costs: Some(costs), faults: String::new() },
+            true => DeviationRun {
+                deviation: LikelyRange::exactly(f64::INFINITY),
+                costs: None,
+                faults: "unbound".to_owned(),
+            },
+        });
+        let target = PlanTarget::of(&case, None, target.map(Width::Absolute)).unwrap();
+        assert_eq!(target.quantity.name, "energy_error");
+        let plan = plan_or_scene(&case, &target, &found, "trials").ok();
+        let what = format!("{cost} {error} {fails} {:?}: {plan:?}", target.error);
+        assert_eq!(
+            plan.as_ref().map(|it| &it.configuration),
+            chosen.map(SettingChoice::label).as_ref(),
+            "{what}"
+        );
+        let Some(plan) = plan else { continue };
+        let is_own = plan.overrides.is_empty();
+        assert_eq!(is_own, chosen == Some(&case.own), "{what}");
+        let (seconds, most) = if is_own { (time, 1e-4) } else { (cost * time, error) };
+        assert!((plan.seconds.likely / seconds - 1.0).abs() < 1e-9 && plan.expected.most == most, "{what}");
+        assert_eq!(plan.deviation.map(|it| it.least), Some(if is_own { 1e-6 } else { error }), "{what}");
+        let page = page(&plan);
+        assert_eq!(page.contains("the scene: keep it as it stands"), is_own, "{page}");
+        assert_eq!(page.contains("(1e-6 at the rows that it writes)"), is_own, "{page}");
+        assert_eq!(page.contains("it fails: unbound"), fails, "{page}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Cost of each configuration of a scene, at its longest usable step.
 
-use super::ExplainError;
 use super::findings::{HALVINGS, MeasuredConfiguration, NO_TIME, SceneTrials, sort_by_cost};
+use super::{ExplainError, is_of_few};
 use crate::study::{SettingChoice, first_line};
 use rayon::ThreadPoolBuilder;
 use stripmine_physics::method::{ChoiceEffect, StepLimit};
@@ -41,22 +41,27 @@ impl SceneTrials<'_> {
         let end = |share: f64| self.end.min(self.trial.watch.now() + OVERHEAD * share);
         let mut configurations = self.timed(&searches, each, end(each));
         drop_expensive(&mut configurations);
-        let Some(best) = configurations
-            .iter()
-            .position(|configuration| configuration.cost.is_some())
-            .map(|at| configurations[at].label.clone())
-        else {
-            let tried = configurations
-                .into_iter()
-                .map(|configuration| (configuration.label, configuration.dropped.unwrap_or_default()));
-            return Err(ExplainError::EveryConfigurationFails(tried.collect()));
+        let every_one_fails = |configurations: &[MeasuredConfiguration]| {
+            let all = configurations.iter();
+            let tried = all.map(|it| (it.label.clone(), it.dropped.clone().unwrap_or_default()));
+            let is_failure = configurations.iter().all(|configuration| configuration.cost.is_none());
+            is_failure.then(|| ExplainError::EveryConfigurationFails(tried.collect()))
         };
-        let best = all.iter().find(|choice| choice.label() == best).unwrap_or(own);
+        // Where its own integrator loses the orbits of few bodies, another may not.
+        if let Some(error) = every_one_fails(&configurations).filter(|_| !is_of_few(self.case)) {
+            return Err(error);
+        }
+        let best = configurations.iter().find(|configuration| configuration.cost.is_some());
+        let best =
+            best.and_then(|best| all.iter().find(|choice| choice.label() == best.label)).unwrap_or(own);
         let others: Vec<&SettingChoice> = all
             .iter()
             .filter(|choice| choice.agrees_on(best, ChoiceEffect::Cost) && !of_own_arithmetic(choice))
             .collect();
         configurations.extend(self.timed(&others, each, end(each)));
+        if let Some(error) = every_one_fails(&configurations) {
+            return Err(error);
+        }
         sort_by_cost(&mut configurations);
         self.tune_skin(&mut configurations, each);
         Ok(configurations)

@@ -47,6 +47,7 @@ fn findings(work: &mut SceneTrials<'_>, progress: &dyn Fn(f64)) -> Result<Findin
     let without = work.measure_simpler_models(best, &mean);
     work.unless_stopped(Findings {
         mean: mean.known,
+        own_run: None,
         mean_configuration: mean.configuration,
         whole: work.whole,
         starts_differ,

@@ -88,7 +88,7 @@ impl SceneTrials<'_> {
     ) -> Result<MeasuredMean, String> {
         let begun = self.trial.watch.now();
         let at_once = rayon::current_num_threads().min(RUNS[1]);
-        let observed = (self.case.entry.quantities, self.target.place);
+        let observed = (self.case.quantities(), self.target.place);
         let from = self.target.window.map_or(0.0, |[from, _]| from);
         let whole = |sample: &TrialSample| {
             let run = WholeRunMean { mean: sample.mean_over([from, time]), cost: sample.cost };

@@ -14,12 +14,11 @@ pub(crate) fn page(plan: &RunPlan) -> String {
     let mut page = vec![answer(plan), expected(plan)];
     page.extend(plan.own.as_ref().map(|own| {
         let takes = seconds(own.seconds);
-        // The scene's own step is not tried where it costs more than the plan.
-        match own.error.most.is_nan() && plan.mean.is_none() {
-            true => format!("scene as it stands: {takes}; its error was not measured"),
-            false => {
-                format!("scene as it stands: {takes} for an error of at most {}", parts(plan, own.error))
-            }
+        let most = own.error.most;
+        match plan.mean {
+            None if most.is_nan() => format!("scene as it stands: {takes}; its error was not measured"),
+            None if most.is_infinite() => format!("scene as it stands: it fails: {}", own.faults),
+            _ => format!("scene as it stands: {takes} for an error of at most {}", parts(plan, own.error)),
         }
     }));
     page.push(String::new());
@@ -48,9 +47,10 @@ fn expected(plan: &RunPlan) -> String {
         None => String::new(),
     };
     format!(
-        "expected: {}{mean}, error at most {}{asked}, in {}; {} of memory",
+        "expected: {}{mean}, error at most {}{}{asked}, in {}; {} of memory",
         plan.quantity,
         parts(plan, plan.expected),
+        plan.deviation.map_or(String::new(), |range| deviations(plan, range)),
         interval(plan.seconds),
         in_words(plan.memory)
     )
@@ -71,6 +71,16 @@ fn parts(plan: &RunPlan, error: ExpectedError) -> String {
             share(plan, chance)
         ),
         None => share(plan, most),
+    }
+}
+
+/// Formats the smaller deviations beside the bound: that of the rows, which see less than every step, and the likely one of another start.
+fn deviations(plan: &RunPlan, LikelyRange { least, likely, most }: LikelyRange) -> String {
+    let [of_rows, likely_text, bound] = [least, likely, most].map(|it| share(plan, it));
+    match (likely < most, of_rows == bound) {
+        (true, _) => format!(" ({of_rows} or more, likely {likely_text})"),
+        (false, false) => format!(" ({of_rows} at the rows that it writes)"),
+        (false, true) => String::new(),
     }
 }
 

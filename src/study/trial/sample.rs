@@ -56,6 +56,8 @@ pub(crate) struct TrialSample {
     pub rows: Vec<Vec<f64>>,
     /// Kind of the quantity, and its index in a row.
     pub observed: (QuantityKind, usize),
+    /// Largest deviation of a conserved quantity at any step, where the simulation watches it.
+    pub(crate) watched: Option<f64>,
     /// Set where values between rows are lost, so that closer rows give more information: instantaneous values, unless a periodic drive repeats them.
     pub(crate) loses: bool,
 }
@@ -78,6 +80,12 @@ impl TrialSample {
 }
 
 impl TrialSample {
+    /// Largest deviations of a conserved quantity, at the rows and at any step that was watched; none where it is not conserved or not a number.
+    pub(crate) fn deviations(&self) -> Option<[f64; 2]> {
+        let AverageOutcome::Kept { farthest, .. } = self.outcome else { return None };
+        Some([farthest, self.watched.map_or(farthest, |watched| watched.max(farthest))])
+    }
+
     /// Costs of time and rows, where values between rows are lost.
     pub(crate) fn pace(&self) -> Option<RowPace> {
         self.loses.then_some(RowPace { cost: self.cost, row: self.row })
@@ -90,8 +98,10 @@ impl TrialSample {
 
     /// Describes that the run ended before a time; none if it did not.
     pub(crate) fn early_end(&self, time: f64) -> Option<String> {
+        // A scene whose time is no multiple of its step ends up to half a step early.
+        let is_whole = self.reaches_scene_end && self.deviations().is_some();
         // The last stretch may end early by rounding.
-        (self.time < time * (1.0 - 1e-9)).then(|| {
+        (!is_whole && self.time < time * (1.0 - 1e-9)).then(|| {
             format!(
                 "stopped at a time of {} of {}, after {} s",
                 significant(self.time, 3),
@@ -160,7 +170,7 @@ pub(crate) enum SampleSpan {
     Seconds(f64),
     /// A time (time), but at most so many wall seconds where these are given.
     Time(f64, Option<f64>),
-    /// As `Time`, with the scene's own spacing of rows.
+    /// As `Time`, with the scene's own spacing of rows. A conserved quantity is followed to the end of the scene, also between two rows.
     Planned(f64, Option<f64>),
 }
 
@@ -232,8 +242,11 @@ impl TrialControl<'_> {
         let mut states = StateSamples::new(prepared);
         // Time and cost of the stretches after warm-up, and of all.
         let (mut warm, mut all) = ((0.0, 0.0), (0.0, 0.0));
+        let is_kept = quantities[place].kind == QuantityKind::Kept;
+        let end_of_scene = own.filter(|_| is_kept).map(|_| prepared.schedule.until);
         while self.watch.now() - running < limit
             && simulation.clock().time < most
+            && end_of_scene.is_none_or(|end| !end.has_been_reached(&simulation.clock()))
             && !self.stop.load(Ordering::Relaxed)
         {
             let (from, before) = (simulation.clock().time, self.watch.now());
@@ -243,7 +256,10 @@ impl TrialControl<'_> {
                 self.advance_to(simulation, &[Until::Time(moment), end])?;
             }
             states.look(simulation, moment);
-            self.advance_to(simulation, &[end])?;
+            match end_of_scene {
+                Some(last) => self.advance_to(simulation, &[end, last])?,
+                None => self.advance_to(simulation, &[end])?,
+            }
             let (gone, spent) = (simulation.clock().time - from, self.watch.now() - before);
             all = (all.0 + gone, all.1 + spent);
             let share = (self.watch.now() - running) / seconds.unwrap_or(f64::INFINITY);
@@ -258,6 +274,7 @@ impl TrialControl<'_> {
         let (time, series, phases) = (simulation.clock().time, rows.time_series(place), phases(simulation));
         let reaches_scene_end = prepared.schedule.until.has_been_reached(&simulation.clock());
         let warnings = simulation.warnings();
+        let watched = simulation.summary().get(&format!("largest_{}", quantities[place].name)).cloned();
         let near = spent / gone;
         let [cost, row] = match of_stretch {
             Some(of_stretch) => self.costs(simulation, stride, (near, of_stretch))?,
@@ -277,6 +294,7 @@ impl TrialControl<'_> {
             states: states.kept,
             rows: all_rows,
             observed: (quantities[place].kind, place),
+            watched: watched.and_then(|it| it.as_f64()).map(f64::abs),
             loses,
         })
     }

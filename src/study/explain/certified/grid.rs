@@ -9,7 +9,7 @@ use super::verdict::PlanVerdict;
 use crate::study::SettingChoice;
 use crate::study::trial::SampleSpan;
 use rayon::ThreadPoolBuilder;
-use stripmine_physics::averages::{AverageOutcome, MeanWithBar, mean_of_independent};
+use stripmine_physics::averages::{MeanWithBar, mean_of_independent};
 use stripmine_physics::method::{ChoiceEffect, Prepared};
 use stripmine_physics::number::significant;
 use stripmine_physics::scene::Overrides;
@@ -301,8 +301,8 @@ impl StartEnsemble<'_> {
         if !first.warnings.is_empty() {
             return Err(first.warning_text());
         }
-        let off = match (first.outcome, self.asking.whole) {
-            (AverageOutcome::Kept { farthest, .. }, _) => [farthest, 0.0],
+        let off = match (first.deviations(), self.asking.whole) {
+            (Some([_, largest]), _) => [largest, 0.0],
             (_, None) => {
                 let known = first.known().ok_or_else(|| first.missing_mean_reason())?;
                 [known.mean - reference.known.mean, known.bar.hypot(reference.known.bar)]

@@ -66,7 +66,7 @@ impl StartEnsemble<'_> {
 
     /// Runs to the end of a span and returns the sample.
     pub(crate) fn sample(&self, prepared: &Prepared, span: SampleSpan) -> Result<TrialSample, String> {
-        let observed = (self.case.entry.quantities, self.target.place);
+        let observed = (self.case.quantities(), self.target.place);
         let sample = self.trial.sample(prepared, observed, span);
         let sample = sample.map_err(|failure| first_line(&failure.what_and_when()))?;
         match span {
@@ -80,7 +80,9 @@ impl StartEnsemble<'_> {
     /// Result of a run: its mean, or the deviation of a conserved quantity.
     pub(super) fn value(&self, sample: &TrialSample) -> Result<f64, String> {
         match sample.outcome {
-            AverageOutcome::Kept { farthest, .. } => Ok(farthest),
+            AverageOutcome::Kept { .. } => {
+                sample.deviations().map(|[_, largest]| largest).ok_or_else(|| sample.missing_mean_reason())
+            }
             _ if self.asking.whole.is_some() => Ok(sample.mean_over(WHOLE)),
             _ => sample.known().map(|known| known.mean).ok_or_else(|| sample.missing_mean_reason()),
         }
