@@ -99,6 +99,14 @@ fn hard_discs_follow_the_virial_series() {
     for (row, point) in table.iter().zip(document["points"].as_array().unwrap()) {
         let alone = stripmine(folder, &["average", point["folders"][0].as_str().unwrap(), "--json"]);
         assert_eq!(json(&alone), point["averages"]);
+        let folder_of_point = point["folders"][0].as_str().unwrap();
+        let some =
+            json(&stripmine(folder, &["average", folder_of_point, "--of", "compressibility", "--json"]));
+        assert_eq!(
+            some["quantities"].as_array().unwrap(),
+            &[of(&point["averages"], "compressibility").clone()]
+        );
+        assert_eq!(stripmine(folder, &["average", folder_of_point, "--of", "flow"]).status.code(), Some(2));
         let z = of(&point["averages"], "compressibility");
         assert_eq!(Some(number(row, "compressibility")), z["mean"].as_f64());
         assert_eq!(Some(number(row, "compressibility_standard_error")), z["standard_error"].as_f64());

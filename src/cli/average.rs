@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use stripmine_physics::averages::{Average, AverageOutcome, Estimate, RunAverages};
 use stripmine_physics::io::owned_folder::{FolderKind, names_in};
-use stripmine_physics::method::{Methods, method, observed_quantities};
+use stripmine_physics::method::{MethodEntry, Methods, method, observed_quantities};
 use stripmine_physics::number::{count_with_noun, significant};
 use stripmine_physics::run::{
     FinishedError, FinishedRun, FunctionPoint, Number, ScenePoint, ScenePoints, StructureFunction,
@@ -29,7 +29,7 @@ pub(super) struct AverageVerb {
     /// Folders of runs, or of several runs made by `run --seeds` or `scan`
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// Quantities to print of runs of different scenes, separated by commas; default: the main ones that fit into 80 columns
+    /// Quantities to print, separated by commas; default: all, and of runs of different scenes the main ones that fit into 80 columns
     #[arg(long, value_delimiter = ',', value_name = "QUANTITIES", conflicts_with = "structure")]
     of: Vec<String>,
     /// Prints the table as CSV
@@ -59,7 +59,11 @@ impl AverageVerb {
         if let Some(scenes) = scenes.filter(|scenes| !scenes.keys.is_empty()) {
             return self.print_points(scenes, &folders, &units, common, methods);
         }
-        let averages = averages_of(&runs)?;
+        let mut averages = averages_of(&runs)?;
+        if !self.of.is_empty() {
+            self.check_names(&folders[0], methods)?;
+            averages.quantities.retain(|it| self.of.iter().any(|name| name == it.quantity));
+        }
         let folders = || folders.iter().map(PathBuf::as_path);
         if let Some(observable) = self.structure.as_deref().and_then(observable) {
             let function = function_of(folders(), observable)?;
@@ -73,7 +77,7 @@ impl AverageVerb {
                 false => print(&terminal::render(&function_table(&function, &units))),
             };
         }
-        let functions = functions_of(folders())?;
+        let functions = if self.of.is_empty() { functions_of(folders())? } else { vec![] };
         if common.json {
             return print_json(&AveragesDocument { averages: &averages, structure: &functions });
         }
@@ -100,6 +104,18 @@ impl AverageVerb {
 }
 
 impl AverageVerb {
+    /// Checks the names of the requested quantities; returns the method of a run.
+    fn check_names(&self, run: &Path, methods: Methods) -> Result<&'static MethodEntry, CommandFailure> {
+        let scene = scene_of(run);
+        let kind = scene.as_ref().and_then(|scene| scene.get("method")?.get("kind")?.as_str());
+        let entry = kind.and_then(|kind| method(methods, kind));
+        let entry = entry.ok_or_else(|| FinishedError::NoMethod(run.to_owned()))?;
+        let table = TableReader::open(&run.join("thermo.csv")).ok();
+        let quantities = table.and_then(|table| observed_quantities(methods, table.columns()));
+        check_names(&self.of, quantities.unwrap_or(entry.quantities)).map_err(CommandFailure::Options)?;
+        Ok(entry)
+    }
+
     /// Prints the means of runs of different scenes over the keys in which these differ.
     fn print_points(
         &self,
@@ -109,13 +125,7 @@ impl AverageVerb {
         common: &Common,
         methods: Methods,
     ) -> Result<(), CommandFailure> {
-        let scene = scene_of(&folders[0]);
-        let kind = scene.as_ref().and_then(|scene| scene.get("method")?.get("kind")?.as_str());
-        let entry = kind.and_then(|kind| method(methods, kind));
-        let entry = entry.ok_or_else(|| FinishedError::NoMethod(folders[0].clone()))?;
-        let table = TableReader::open(&folders[0].join("thermo.csv")).ok();
-        let quantities = table.and_then(|table| observed_quantities(methods, table.columns()));
-        check_names(&self.of, quantities.unwrap_or(entry.quantities)).map_err(CommandFailure::Options)?;
+        let entry = self.check_names(&folders[0], methods)?;
         let names =
             |runs: Vec<usize>| runs.into_iter().map(|run| folders[run].display().to_string()).collect();
         let point = |ScenePoint { values, runs, averages }| TablePoint {
