@@ -363,3 +363,18 @@ fn average_finds_the_keys_that_differ() {
         &["a and b have different scenes"],
     );
 }
+
+/// Keys of walls are scanned by the number of the wall.
+#[test]
+fn values_of_walls_are_scanned() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = ["scan", "hopper", "--over", "walls.1.friction=0.1,0.9", "--set", "run.steps=40", "--json"];
+    let table = json(&stripmine(folder.path(), &scan));
+    let values: Vec<f64> = table["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|point| point["values"][0].as_f64().unwrap())
+        .collect();
+    assert_eq!(values, [0.1, 0.9]);
+}

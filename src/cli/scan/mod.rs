@@ -277,5 +277,11 @@ fn table_keys(keys: &[ScanKey], entry: &'static MethodEntry) -> Vec<TableKey> {
 /// Unit of a key; empty for pure numbers and words.
 pub(super) fn unit_of(path: &str, entry: &'static MethodEntry) -> &'static str {
     let (section, name) = path.split_once('.').unwrap_or(("", path));
-    entry.vocabulary.keys.key(section, name).map_or("", |key| key.unit)
+    let keys = &entry.vocabulary.keys;
+    // A value of a list of tables, such as `walls.2.to`.
+    let of_list = || {
+        let (_, name) = name.split_once('.')?;
+        keys.keys_and_fields().find(|key| key.section == section && key.name == name)
+    };
+    keys.key(section, name).or_else(of_list).map_or("", |key| key.unit)
 }

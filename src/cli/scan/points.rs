@@ -121,9 +121,7 @@ pub(super) fn table_point(
 ) -> Result<TablePoint, CommandFailure> {
     let resolved: Option<toml::Table> = checked.scene.parse().ok();
     let value = |(key, typed): (&ScanKey, &Value)| {
-        let (section, name) = key.path.split_once('.')?;
-        let found = resolved.as_ref().and_then(|scene| scene.get(section)?.get(name)).unwrap_or(typed);
-        Some(found.clone())
+        Some(resolved.as_ref().and_then(|scene| found(scene, &key.path)).unwrap_or(typed).clone())
     };
     let values = keys.iter().zip(&checked.point.values).map(value).collect();
     let folders = checked.runs.iter().map(|run| run.folder.display().to_string()).collect();
@@ -150,6 +148,16 @@ pub(super) fn table_point(
         (Some(_), false) => None,
     };
     Ok(TablePoint { values, folders, averages, failure })
+}
+
+/// Value of a scene at a path such as `walls.2.to`; items of lists are numbered from 1.
+fn found<'s>(scene: &'s toml::Table, path: &str) -> Option<&'s Value> {
+    let mut parts = path.split('.');
+    let first = scene.get(parts.next()?)?;
+    parts.try_fold(first, |value, part| match value {
+        Value::Array(items) => items.get(part.parse::<usize>().ok()?.checked_sub(1)?),
+        _ => value.get(part),
+    })
 }
 
 /// All mistakes of the scenes that were refused, each once, with the options as they were given. A mistake of the scene that not all points have is

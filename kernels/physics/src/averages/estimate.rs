@@ -22,6 +22,8 @@ const DRIFT_AFTER_TRANSIENT: f64 = 0.99;
 const PER_CARRIER: f64 = 4.0;
 /// Relative variation below which a series counts as constant: it is rounding error.
 const ROUNDING: f64 = 1e-9;
+/// Fewest values of a series at rest.
+const LEAST_AT_REST: usize = 100;
 /// Number of degrees of freedom beyond which Student's t hardly changes.
 const MANY: f64 = 1000.0;
 
@@ -190,6 +192,9 @@ pub fn estimate_mean(series: &[f64], from: f64, spacing: f64) -> AverageOutcome 
     if n < FEWEST_SAMPLES {
         return few(n, from + FEWEST_SAMPLES * spacing, None);
     }
+    if let Some(settled) = settled(series, from, spacing) {
+        return AverageOutcome::Mean(settled);
+    }
     let cut = transient_length(series);
     let start = cut.unwrap_or(0);
     let kept = &series[start..];
@@ -209,6 +214,33 @@ pub fn estimate_mean(series: &[f64], from: f64, spacing: f64) -> AverageOutcome 
         return AverageOutcome::Changing { first, last };
     }
     AverageOutcome::Mean(estimate)
+}
+
+/// Estimate of a series that came to rest: its last half, of at least [`LEAST_AT_REST`] values, varies by rounding only. The error is that variation.
+/// Zeros and whole numbers are no sign of rest: counts may change again.
+fn settled(series: &[f64], from: f64, spacing: f64) -> Option<Estimate> {
+    let half = &series[series.len() / 2..];
+    let ([low, high], last) = (ends(half), *half.last()?);
+    let variation = ROUNDING * last.abs();
+    let is_count = half.iter().all(|value| value.fract() == 0.0);
+    if half.len() < LEAST_AT_REST || is_count || high - low > variation {
+        return None;
+    }
+    let moving = series.iter().rposition(|value| (value - last).abs() > variation).map_or(0, |at| at + 1);
+    let kept = &series[moving..];
+    let ([low, high], n) = (ends(kept), kept.len() as f64);
+    let bar = (high - low).max(f64::EPSILON * last.abs());
+    Some(Estimate {
+        mean: mean(kept),
+        bar,
+        standard_error: 0.5 * bar,
+        freedoms: n - 1.0,
+        inefficiency: 1.0,
+        correlation_time: 0.0,
+        equilibrated_at: from + moving as f64 * spacing,
+        independent_samples: n,
+        span: n * spacing,
+    })
 }
 
 impl Estimate {
@@ -417,6 +449,18 @@ mod tests {
         assert_eq!(estimate_mean(&[2.5; 40], 0.0, 1.0), AverageOutcome::Constant { mean: 2.5 });
         let rounded: Vec<f64> = (0..40).map(|at| 2.5 + 1e-14 * f64::from(at)).collect();
         assert!(matches!(estimate_mean(&rounded, 0.0, 1.0), AverageOutcome::Constant { .. }));
+        // A pack that settles: at rest from about row 210 on, as exp(-0.1 t) < 10⁻⁹.
+        let settling: Vec<f64> = (0..1000).map(|at| 5.2 * (1.0 + (-0.1 * f64::from(at)).exp())).collect();
+        let AverageOutcome::Mean(rest) = estimate_mean(&settling, 0.0, 1.0) else { panic!() };
+        assert!(
+            (rest.mean - 5.2).abs() < 1e-9
+                && rest.bar <= 1.1e-8
+                && (rest.equilibrated_at - 208.0).abs() < 3.0,
+            "{rest:?}"
+        );
+        // Counts that happen to stay are not at rest.
+        let counts: Vec<f64> = (0..1000).map(|at| f64::from(i32::from(at > 300))).collect();
+        assert!(!matches!(estimate_mean(&counts, 0.0, 1.0), AverageOutcome::Mean(it) if it.bar < 1e-3));
         let mut undefined = vec![2.5; 40];
         undefined[7] = f64::NAN;
         assert_eq!(estimate_mean(&undefined, 0.0, 1.0), AverageOutcome::Undefined);

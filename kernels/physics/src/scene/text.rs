@@ -84,8 +84,12 @@ fn override_with(values: &mut SceneValues, text: &str, methods: &[&'static Vocab
         let error = spot.error(MistakeKind::Override, "an override needs a key and a value");
         return values.errors.push(error.expecting("section.key=value"));
     };
-    let (path, value) = (path.trim(), as_typed(value.trim()));
+    let typed = value.trim();
+    let (path, value) = (path.trim(), as_typed(typed));
     let source = ValueSource { text: None, file: &file, keys: &values.vocabulary.keys, methods };
+    if let Some((list, text)) = item_of_list(values, path, typed) {
+        return source.read_head_entry(values, &Spanned::new(0..0, list.into()), &as_typed(&text));
+    }
     match path.split_once('.') {
         Some((section, key)) => match SECTIONS.iter().find(|(name, _)| *name == section) {
             Some((name, _)) => source.key(values, name, &Spanned::new(0..0, key.into()), &value),
@@ -93,6 +97,21 @@ fn override_with(values: &mut SceneValues, text: &str, methods: &[&'static Vocab
         },
         None => source.read_head_entry(values, &Spanned::new(0..0, path.into()), &value),
     }
+}
+
+/// Name and new text of a list of tables in which an override such as `walls.2.to` replaces one value; items are numbered from 1.
+fn item_of_list(values: &SceneValues, path: &str, typed: &str) -> Option<(String, String)> {
+    let (list, rest) = path.split_once('.')?;
+    let (number, name) = rest.split_once('.')?;
+    let key = values.vocabulary.keys.key("", list)?;
+    let (Some(KeyValue::Tables(rows)), Ok(number)) = (values.value(key), number.parse::<usize>()) else {
+        return None;
+    };
+    let parsed = |text: &str| format!("value = {text}").parse::<toml::Table>().ok()?.remove("value");
+    let mut items = parsed(&KeyValue::Tables(rows).to_toml())?;
+    let item = items.as_array_mut()?.get_mut(number.checked_sub(1)?)?.as_table_mut()?;
+    item.insert(name.to_owned(), parsed(typed).unwrap_or_else(|| toml::Value::String(typed.to_owned())));
+    Some((list.to_owned(), items.to_string()))
 }
 
 /// Applies an override of a known key, with the checks and messages of a typed one.

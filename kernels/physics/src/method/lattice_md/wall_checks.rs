@@ -14,6 +14,7 @@ use crate::particles::{Particles, longest_step};
 use crate::scene::{DT, MistakeKind, SceneError, Warning};
 use crate::start::rounded_to_nine_digits;
 use crate::words::Words;
+use std::collections::BTreeSet;
 use stripmine_kernels::law::Law;
 
 /// Largest number of errors of one kind that are listed.
@@ -71,18 +72,21 @@ pub(super) fn shapes(document: &GranularDocument, domain: &Domain, particles: &P
         errors.extend(refused.map(|(_, key)| values.spot(key).error(MistakeKind::Contradiction, why)));
     }
     let longest = particles.radii().map(|[smallest, _]| longest_step(smallest, scene.law.max_penetration));
+    let smallest = particles.radii().map_or(f64::INFINITY, |[smallest, _]| smallest);
     for (number, wall) in scene.plane.list.iter().enumerate() {
         let name = wall_name(&wall.label(number + 1));
         let earlier = &scene.plane.list[..number];
         let mistakes = [
             ends_mistake(wall, domain, earlier.iter().any(|it| it.side.is_some() && it.side == wall.side)),
-            motion_mistake(wall),
+            motion_mistake(wall, scene.run.steps as f64 * scene.integrator.dt, smallest),
             longest.and_then(|limit| speed_mistake(wall, scene.integrator.dt, limit)),
         ];
-        errors.extend(mistakes.into_iter().flatten().map(|WallMistake { kind, message, remedy }| {
-            let error = values.item_spot(&WALLS, number).error(kind, format!("{name} {message}"));
-            error.advising(remedy)
-        }));
+        errors.extend(mistakes.into_iter().flatten().map(
+            |WallMistake { kind, message, expected, remedy }| {
+                let error = values.item_spot(&WALLS, number).error(kind, format!("{name} {message}"));
+                error.expecting(expected).advising(remedy)
+            },
+        ));
     }
     for (number, [a, b]) in scene.plane.lines.iter().enumerate().filter(|(_, [a, b])| a == b) {
         let message = format!("line {} of [[flux]] has both ends at ({}, {})", number + 1, a[0], b[1]);
@@ -93,16 +97,22 @@ pub(super) fn shapes(document: &GranularDocument, domain: &Domain, particles: &P
     errors
 }
 
-/// Mistake in a wall: its kind, the message after the wall's name, and the remedy.
+/// Mistake in a wall: its kind, the message after the wall's name, the expectation and the remedy.
 struct WallMistake {
     kind: MistakeKind,
     message: String,
+    expected: &'static str,
     remedy: String,
 }
 
 impl WallMistake {
-    fn new(kind: MistakeKind, message: impl Into<String>, remedy: impl Into<String>) -> Option<WallMistake> {
-        Some(WallMistake { kind, message: message.into(), remedy: remedy.into() })
+    fn new(
+        kind: MistakeKind,
+        message: impl Into<String>,
+        expected: &'static str,
+        remedy: impl Into<String>,
+    ) -> Option<WallMistake> {
+        Some(WallMistake { kind, message: message.into(), expected, remedy: remedy.into() })
     }
 }
 
@@ -113,31 +123,28 @@ fn ends_mistake(wall: &SceneWall, domain: &Domain, is_repeated: bool) -> Option<
     if let Some(side) = wall.side {
         let axis = side.axis();
         return if wall.ends != [None; 2] {
-            WallMistake::new(
-                Contradiction,
-                "has `from` or `to` beside `side`",
-                "leave out `from` and `to`, or `side`",
-            )
+            let expected = "a side, or two ends";
+            let remedy = "leave out `from` and `to`, or `side`";
+            WallMistake::new(Contradiction, "has `from` or `to` beside `side`", expected, remedy)
         } else if domain.is_periodic(axis) {
             let message = format!("is periodic along {}: there is no wall", axes[axis]);
-            WallMistake::new(
-                Contradiction,
-                message,
-                "close the side in domain.periodic, or give `from` and `to`",
-            )
+            let remedy = "close the side in domain.periodic, or give `from` and `to`";
+            WallMistake::new(Contradiction, message, "a closed side", remedy)
         } else if is_repeated {
-            WallMistake::new(Contradiction, "is given twice", "leave out one of the two tables")
+            let remedy = "leave out one of the two tables";
+            WallMistake::new(Contradiction, "is given twice", "each side once", remedy)
         } else {
             None
         };
     }
     let [Some(a), Some(b)] = wall.ends else {
         let missing = if wall.ends[0].is_none() { "from" } else { "to" };
-        return WallMistake::new(Geometry, format!("has no `{missing}`"), "give `from` and `to`, or `side`");
+        let message = format!("has no `{missing}`");
+        return WallMistake::new(Geometry, message, "two ends, or a side", "give `from` and `to`, or `side`");
     };
     if a == b {
         let message = format!("has both ends at ({}, {})", a[0], a[1]);
-        return WallMistake::new(Geometry, message, "give two different ends");
+        return WallMistake::new(Geometry, message, "two different ends", "move one of them");
     }
     let covers = |axis: &usize| {
         domain.is_periodic(*axis) && (b[*axis] - a[*axis]).abs() > domain.length(*axis) * (1.0 + 1e-12)
@@ -149,37 +156,60 @@ fn ends_mistake(wall: &SceneWall, domain: &Domain, is_repeated: bool) -> Option<
         axes[axis],
         domain.length(axis)
     );
-    WallMistake::new(Geometry, message, "end it after one period: its ends join")
+    WallMistake::new(Geometry, message, "at most one period", "end it after one period: its ends join")
 }
 
-/// Mistake in the motion of a wall: keys that contradict each other.
-fn motion_mistake(wall: &SceneWall) -> Option<WallMistake> {
-    use MistakeKind::Contradiction;
+/// Mistake in the motion of a wall: keys that contradict each other, or a side that leaves the box and takes the grains with it, in a run of a duration
+/// (time) with grains of at least `radius` (length).
+fn motion_mistake(wall: &SceneWall, time: f64, radius: f64) -> Option<WallMistake> {
+    use MistakeKind::{Contradiction, Geometry};
     let PlaneMotion { velocity, amplitude, frequency, .. } = wall.motion;
     let is_prescribed = (velocity, amplitude, frequency) != ([0.0; 2], [0.0; 2], 0.0);
     match wall.drive {
-        (Some(_), None) | (None, Some(_)) => WallMistake::new(
-            Contradiction,
-            "has a mass without a force, or a force without a mass",
-            "give both: the force moves the wall along its direction",
-        ),
-        (Some(_), Some([0.0, 0.0])) => WallMistake::new(
-            Contradiction,
-            "has a force of 0, which gives no direction to move along",
-            "give the force that holds the grains, [0.0, -1.0] for example",
-        ),
-        (Some(_), Some(_)) if is_prescribed => WallMistake::new(
-            Contradiction,
-            "has a mass and a prescribed motion",
-            "leave out `mass` and `force`, or `velocity`, `amplitude` and `frequency`",
-        ),
-        _ if (amplitude == [0.0; 2]) != (frequency == 0.0) => WallMistake::new(
-            Contradiction,
-            "has an amplitude without a frequency, or a frequency without an amplitude",
-            "give both, or neither",
-        ),
-        _ => None,
+        (Some(_), None) => {
+            let remedy = "give `force`, which moves the wall along its direction";
+            return WallMistake::new(Contradiction, "has a mass without a force", "both or neither", remedy);
+        }
+        (None, Some(_)) => {
+            let remedy = "give `mass`: the force moves it";
+            return WallMistake::new(Contradiction, "has a force without a mass", "both or neither", remedy);
+        }
+        (Some(_), Some([0.0, 0.0])) => {
+            let message = "has a force of 0, which gives no direction to move along";
+            let remedy = "give the force that holds the grains, [0.0, -1.0] for example";
+            return WallMistake::new(Contradiction, message, "a force that is not 0", remedy);
+        }
+        (Some(_), Some(_)) if is_prescribed => {
+            let remedy = "leave out `mass` and `force`, or `velocity`, `amplitude` and `frequency`";
+            let expected = "one of the two motions";
+            return WallMistake::new(Contradiction, "has a mass and a prescribed motion", expected, remedy);
+        }
+        _ if (amplitude == [0.0; 2]) != (frequency == 0.0) => {
+            let message = "has an amplitude without a frequency, or a frequency without an amplitude";
+            return WallMistake::new(Contradiction, message, "both or neither", "give the other one, too");
+        }
+        _ => {}
     }
+    let side = wall.side?;
+    let (axis, out) = (side.axis(), side.outwards());
+    if let (_, Some(force)) = wall.drive
+        && force[axis] * out >= 0.0
+    {
+        let message = format!("is driven by [{}, {}], which does not press it inwards", force[0], force[1]);
+        let remedy = "turn the force towards the grains";
+        return WallMistake::new(Contradiction, message, "a force into the box", remedy);
+    }
+    let drift = velocity[axis] * out * time;
+    let beyond = drift.max(0.0) + amplitude[axis].abs();
+    (beyond >= radius).then(|| WallMistake {
+        kind: Geometry,
+        message: format!(
+            "moves out of the box by up to {}, the radius of a grain or more: grains would leave the box with it",
+            significant(beyond, 4)
+        ),
+        expected: "a wall that stays in the box",
+        remedy: "make the box larger and give the wall with `from` and `to`, or lower its amplitude or velocity".to_owned(),
+    })
 }
 
 /// Mistake in the speed of a wall whose motion is prescribed, for steps of `dt` (time) of at most `longest` (length).
@@ -195,7 +225,7 @@ fn speed_mistake(wall: &SceneWall, dt: f64, longest: f64) -> Option<WallMistake>
         significant(longest, 5)
     );
     let remedy = format!("slow it down, or lower {} below {}", DT.path(), significant(longest / speed, 5));
-    WallMistake::new(MistakeKind::Stability, message, remedy)
+    WallMistake::new(MistakeKind::Stability, message, "a slower wall or a shorter step", remedy)
 }
 
 /// Warnings about driven walls that are lighter than the grains beside them: they oscillate faster than a grain.
@@ -297,12 +327,14 @@ pub(super) fn gaps(
     let stated = list.iter().enumerate().filter(|(_, wall)| wall.side.is_none());
     let ends =
         stated.flat_map(|(number, wall)| wall.ends.into_iter().flatten().map(move |end| (number, end)));
+    let mut found = BTreeSet::new();
     let gap = |(number, end): (usize, [f64; 2])| {
         let others = walls.all().iter().enumerate().filter(move |(other, _)| *other != number);
         let nearest =
             others.map(|(other, wall)| (domain.distance_to_segment(domain.wrapped(end), &wall.ends), other));
         let (width, other) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (2.0 * smallest..4.0 * smallest).contains(&width).then(|| Warning {
+        let is_new = found.insert([number.min(other), number.max(other)]);
+        (is_new && (2.0 * smallest..4.0 * smallest).contains(&width)).then(|| Warning {
             check: "gap between walls",
             share: width / (2.0 * smallest),
             is_refusal: false,
@@ -316,7 +348,8 @@ pub(super) fn gaps(
                 wall_name(&walls.all()[other].label),
                 significant(2.0 * smallest, 4)
             ),
-            suggestion: "let the ends coincide where a closed shape is meant".to_owned(),
+            suggestion: "let the ends coincide where a closed shape is meant, or widen an outlet to 4 radii"
+                .to_owned(),
         })
     };
     ends.filter_map(gap).take(NAMED).collect()

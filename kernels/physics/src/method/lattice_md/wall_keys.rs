@@ -89,6 +89,11 @@ impl BoxSide {
         usize::from(matches!(self, BoxSide::Bottom | BoxSide::Top))
     }
 
+    /// Sign of the direction out of the box along the axis.
+    pub(super) fn outwards(self) -> f64 {
+        if matches!(self, BoxSide::Right | BoxSide::Top) { 1.0 } else { -1.0 }
+    }
+
     /// Ends of the side of a box (length).
     pub(super) fn ends(self, domain: &Domain) -> [[f64; 2]; 2] {
         let ([left, bottom], [width, height]) = (domain.corner(), domain.lengths());

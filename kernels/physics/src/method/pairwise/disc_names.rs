@@ -62,8 +62,8 @@ pub(crate) fn outside(at: Clock, count: u64, first: Culprit) -> PhysicsFailure {
 /// Failure of discs that left the box.
 fn out_of_box(at: Clock, count: u64, first: Culprit) -> PhysicsFailure {
     let what = format!("{count} discs left the box, first {first}");
-    let remedy = "a disc passed a wall or the time step is too large: use larger or stiffer wall discs, slower grains, or a \
-                  smaller dt";
+    let remedy = "a disc passed a wall, a wall moved out of the box, or the time step is too large: use a larger box, larger or \
+                  stiffer wall discs, slower grains, or a smaller dt";
     PhysicsFailure::new(FailureKind::OUT_OF_BOX, what, remedy).at(at).of(count, [first])
 }
 

@@ -79,6 +79,19 @@ fn floor_carries_the_weight() {
     assert!(grains.totals().wall_work == 0.0 && grains.totals().dissipated > 0.0);
 }
 
+/// An override replaces one value of one wall.
+#[test]
+fn overrides_name_walls_by_their_number() {
+    let scene = GranularScene::parse("walls", MANY).unwrap();
+    let changed = scene.with_overrides(&["walls.2.to=[8.0, 5.0]", "walls.1.friction=0.3"]).unwrap();
+    let (before, after) = (&scene.plane.list, &changed.plane.list);
+    assert_eq!(after[1].ends, [Some([6.0, 4.0]), Some([8.0, 5.0])]);
+    assert!(after[0].ends == before[0].ends && after[0] != before[0] && after[2..] == before[2..]);
+    let refused = scene.with_overrides(&["walls.1.fricton=0.3"]).unwrap_err().to_string();
+    assert!(refused.contains("did you mean \"friction\"?"), "{refused}");
+    assert!(scene.with_overrides(&["walls.9.friction=0.3"]).is_err());
+}
+
 /// Wall discs may overlap each other: a grain on the middle one of three rests at 2R − m g/k above it.
 #[test]
 fn overlapping_wall_discs_carry_a_grain() {
