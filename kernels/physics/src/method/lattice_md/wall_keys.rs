@@ -52,9 +52,9 @@ define_keys! {
     /// Walls of the box and of the user.
     pub(super) static WALL_KEYS;
     WALLS = "" "walls", Tables(FIELDS), "", Otherwise("none"), ALWAYS,
-        "Plane walls, one table [[walls]] each: a segment that a grain meets as it meets a fixed disc of radius 0 at the nearest point. Ends that coincide are joined.";
+        "Plane walls, one table `[[walls]]` each: a segment that a grain meets as it meets a fixed disc of radius 0 at the nearest point. Ends that coincide are joined.";
     FLUX = "" "flux", Tables(LINE), "", Otherwise("none"), ALWAYS,
-        "Lines through which grains are counted, one table [[flux]] each; a centre that crosses to the right of the direction from `from` to `to` counts 1, to the left −1.";
+        "Lines through which grains are counted, one table `[[flux]]` each; a centre that crosses to the right of the direction from `from` to `to` counts 1, to the left −1.";
     CLOSED_SIDES = "domain" "closed_sides", Choice(ClosedSides::WORDS), "", Otherwise("wall; edge where there are wall discs"), ALWAYS,
         "Closed sides of the box: walls with the coefficients of the law, or edges at which a disc that leaves stops the run.";
 }
